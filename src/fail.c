@@ -1,0 +1,103 @@
+#include "fail.h"
+
+#include <mpi.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* Rank in the world, or -1 where MPI does not run (not yet, no longer, or a host test). */
+static int world_rank(void)
+{
+    int started = 0, ended = 0, rank = -1;
+    MPI_Initialized(&started);
+    MPI_Finalized(&ended);
+    if (started && !ended) MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    return rank;
+}
+
+static void print_error(int rank, const char *format, va_list args)
+{
+    char text[4096];
+    vsnprintf(text, sizeof text, format, args);
+    if (rank > 0) fprintf(stderr, "democles: error: rank %d: %s\n", rank, text);
+    else fprintf(stderr, "democles: error: %s\n", text);
+    fflush(stderr);
+}
+
+_Noreturn void fail_stop(int exit_code, const char *format, ...)
+{
+    int rank = world_rank();
+    va_list args;
+    va_start(args, format);
+    print_error(rank, format, args);
+    va_end(args);
+    fflush(stdout);
+    if (rank >= 0) MPI_Abort(MPI_COMM_WORLD, exit_code);
+    /* No exit handlers: device libraries may have work under way on other threads. */
+    _exit(exit_code);
+}
+
+_Noreturn void fail_leave(int exit_code)
+{
+    fflush(stdout);
+    if (world_rank() >= 0) MPI_Finalize();
+    _exit(exit_code);
+}
+
+_Noreturn void fail_stop_together(int exit_code, const char *format, ...)
+{
+    int rank = world_rank();
+    if (rank <= 0) {
+        va_list args;
+        va_start(args, format);
+        print_error(0, format, args);
+        va_end(args);
+    }
+    fail_leave(exit_code);
+}
+
+void fail_warn(const char *format, ...)
+{
+    if (world_rank() > 0) return;
+    va_list args;
+    va_start(args, format);
+    fputs("democles: warning: ", stderr);
+    vfprintf(stderr, format, args);
+    fputc('\n', stderr);
+    va_end(args);
+}
+
+void *fail_alloc(size_t bytes)
+{
+    void *p = calloc(bytes ? bytes : 1, 1);
+    if (!p) fail_stop(EXIT_IO, "out of memory: %zu bytes were asked for", bytes);
+    return p;
+}
+
+void *fail_realloc(void *old, size_t bytes)
+{
+    void *p = realloc(old, bytes ? bytes : 1);
+    if (!p) fail_stop(EXIT_IO, "out of memory: %zu bytes were asked for", bytes);
+    return p;
+}
+
+char *fail_strdup(const char *text)
+{
+    size_t n = strlen(text) + 1;
+    return memcpy(fail_alloc(n), text, n);
+}
+
+char *fail_format(const char *format, ...)
+{
+    va_list args, again;
+    va_start(args, format);
+    va_copy(again, args);
+    int n = vsnprintf(NULL, 0, format, args);
+    va_end(args);
+    char *text = fail_alloc((size_t)n + 1);
+    vsnprintf(text, (size_t)n + 1, format, again);
+    va_end(again);
+    return text;
+}
