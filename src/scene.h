@@ -1,0 +1,171 @@
+/* The scene: everything a user asked for, in SI units, checked and complete with defaults.
+ *
+ * A scene is read once, by every rank alike, and is constant afterwards. It knows no device, no MPI and no element:
+ * generate.c turns it into elements and walls, features.c into the kernels that it needs.
+ * One typed table of keys (scene_keys.c) drives the parser, its errors, the defaults, `explain` and `check --resolved`. */
+#ifndef DEMOCLES_SCENE_H
+#define DEMOCLES_SCENE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+enum method { METHOD_PARTICLES, METHOD_LATTICE };
+enum precision { PRECISION_DEFAULT, PRECISION_DOUBLE, PRECISION_MIXED, PRECISION_SINGLE };
+
+struct scene_time {
+    double end;          /* [s] */
+    double step;         /* [s]; 0: auto */
+    double safety;       /* [1] share of the rigorous limit that `auto` takes */
+    bool allow_unstable; /* run although the step is over its limit */
+};
+
+struct material {
+    char *name;
+    double density; /* [kg/m3] */
+    double young;   /* [Pa]; 0: not given */
+    double poisson; /* [1] */
+};
+
+enum normal_law { NORMAL_LINEAR, NORMAL_HERTZ };
+enum rolling_model { ROLLING_NONE, ROLLING_CDT, ROLLING_EPSD };
+
+/* Contact of two materials, unordered pair. A part that the scene leaves out has its `has_` false and costs nothing. */
+struct contact {
+    int between[2]; /* materials, indices into scene.material */
+    enum normal_law normal_law;
+    double stiffness;     /* k_n [N/m], linear law only */
+    double damping_ratio; /* z_n [1]; from `restitution` where that is given */
+    double restitution;   /* e [1] as given, else negative */
+    bool attraction;      /* keep the attractive tail of the dashpot (default true) */
+    bool has_tangential;
+    double stiffness_ratio;    /* k_t/k_n [1], linear law; Hertz takes Mindlin's where this is negative (not given) */
+    double tangential_damping; /* z_t [1] */
+    double friction;           /* mu [1] */
+    enum rolling_model rolling;
+    double rolling_friction;  /* mu_r [1] */
+    double rolling_damping;   /* eta_r [1], EPSD */
+    double rolling_stiffness; /* k_r/(k_n (mu_r R*)^2) [1], EPSD, default 2.25 */
+    double binding_force;     /* F_b [N]; 0: none */
+};
+
+enum region_kind { REGION_BOX, REGION_CYLINDER, REGION_STL };
+struct region {
+    enum region_kind kind;
+    double min[3], max[3];         /* box [m] */
+    double from[3], to[3], radius; /* cylinder [m] */
+    char *stl;                     /* closed surface, path as usable from the working directory */
+    double scale;                  /* metres per unit of the file */
+};
+
+struct element_group {
+    char *name;
+    int material;
+    double diameter[2]; /* smallest, largest [m]; uniform in between; equal: one size */
+    bool from_file;
+    char *file;           /* CSV x,y,z,radius[,vx,vy,vz,wx,wy,wz] */
+    struct region region; /* fill */
+    long count;           /* number of elements; 0: as many as fit */
+    double jitter;        /* [1]: lattice of spacing (1+jitter) d, each element displaced by up to jitter d/2 per axis */
+    unsigned long seed;
+    double velocity[3];         /* [m/s] */
+    double angular_velocity[3]; /* [rad/s] */
+    int line;                   /* of the scene file, for later errors */
+};
+
+enum surface_kind { SURFACE_PLANE, SURFACE_RECTANGLE, SURFACE_BOX, SURFACE_CYLINDER, SURFACE_STL };
+struct wall {
+    char *name;
+    int material;
+    enum surface_kind kind;
+    double point[3], normal[3];    /* plane; rectangle: center, normal (a unit vector) */
+    double size[2];                /* rectangle [m], along its two in-plane axes (see walls_axes in src/walls.h) */
+    double min[3], max[3];         /* box: elements stay inside */
+    double from[3], to[3], radius; /* cylinder */
+    bool inside;                   /* cylinder: elements stay inside it */
+    char *stl;
+    double scale;
+    double velocity[3];          /* [m/s] */
+    double rotation_center[3];   /* [m] */
+    double rotation_axis[3];     /* unit vector, also without rotation */
+    double rotation_rate;        /* [rad/s] */
+    double amplitude[3];         /* oscillation x = A sin(2 pi f t + phase) [m] */
+    double frequency, phase;     /* [Hz], [rad] */
+    double appear_at, remove_at; /* [s]; 0 and infinity where not given */
+    int line;
+};
+
+struct domain {
+    bool periodic[3];
+    bool has_box;          /* min, max were given; else the bounding box of walls and elements (grown by a margin) */
+    double min[3], max[3]; /* [m]; needed for periodic directions */
+    bool remove_outside;
+};
+
+enum partition_method { PARTITION_GEOMETRIC };
+struct scene_partition {
+    enum partition_method method;
+    long every;       /* steps between re-cuts; 0: never */
+    double threshold; /* imbalance U above which a due re-cut is made */
+};
+
+enum measure_kind { MEASURE_COUNT, MEASURE_ENERGY, MEASURE_MOMENTUM, MEASURE_WALL_FORCE, MEASURE_PROBE };
+struct measure {
+    char *name;
+    double every; /* [s] */
+    enum measure_kind kind;
+    double below[3]; /* count: element centre below this coordinate; +infinity where not given */
+    double above[3]; /* count: above; -infinity where not given */
+    int wall;        /* wall_force: index into scene.wall */
+    long element;    /* probe: global id */
+    int line;
+};
+
+struct output {
+    double every;            /* [s]; 0: first and last frame only */
+    double checkpoint_every; /* [s]; 0: frames are the checkpoints */
+    char **field;            /* [n_field] names */
+    int n_field;
+};
+
+struct scene {
+    char *path; /* of the file, as given */
+    char *name; /* stem of the file, or of its folder when the file is scene.yaml */
+    char *title;
+    enum method method;
+    enum precision precision;
+    struct scene_time time;
+    double gravity[3]; /* [m/s2] */
+    struct material *material;
+    int n_material;
+    struct contact *contact;
+    int n_contact;
+    struct element_group *group;
+    int n_group;
+    struct wall *wall;
+    int n_wall;
+    struct domain domain;
+    struct scene_partition partition;
+    struct output output;
+    struct measure *measure;
+    int n_measure;
+    char *resolved;     /* the scene with all defaults, as YAML text that reads back to the same scene */
+    unsigned long hash; /* of the resolved text */
+};
+
+/* Messages of one reading, sorted by line and column. */
+struct scene_errors {
+    char **text;
+    int n;
+};
+
+/* Reads and checks `path`, with `set` (n_set strings KEY=VALUE, KEY as dotted path: time.end=1s, walls[1].motion.remove_at=0.2s) applied.
+ * Returns NULL when `errors` is not empty. Not collective: every rank reads; each gets the same answer. */
+struct scene *scene_read(const char *path, const char *const *set, int n_set, struct scene_errors *errors);
+void scene_free(struct scene *scene);
+void scene_errors_add(struct scene_errors *errors, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void scene_errors_free(struct scene_errors *errors);
+
+/* The reference page of all keys, or of those below `key` ("contacts.normal"), to stdout. Returns false, and names the nearest, if there is none. */
+bool scene_explain(const char *key);
+
+#endif

@@ -1,0 +1,351 @@
+/* Values of keys: one reader per type. Each checks the node, stores the value in the record and writes it, in SI, to the resolved text. */
+#include <ctype.h>
+#include <errno.h>
+#include <limits.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "fail.h"
+#include "nearest.h"
+#include "scene_reader.h"
+#include "units.h"
+
+enum { MAX_WORDS = 32 };
+
+/* What a key's value is read with. */
+struct place {
+    struct scene_reader *reader;
+    const struct scene_key *key;
+    const char *path;
+    void *record;
+};
+
+static bool is_kind(const struct place *p, const struct scene_node *node, enum scene_node_kind kind, const char *expected)
+{
+    if (node->kind == kind && !scene_yaml_is_null(node)) return true;
+    scene_issue_at(p->reader, node, p->path, "expected %s, found %s", expected, scene_yaml_kind_name(node));
+    return false;
+}
+
+/* Splits "a|b|c" into `buffer`; returns the number of words. An empty word counts. */
+static int split_words(const char *words, char *buffer, size_t size, const char **word)
+{
+    snprintf(buffer, size, "%s", words);
+    int n = 0;
+    for (char *p = buffer; p && n < MAX_WORDS;) {
+        char *bar = strchr(p, '|');
+        if (bar) *bar = '\0';
+        word[n++] = p;
+        p = bar ? bar + 1 : NULL;
+    }
+    return n;
+}
+
+void scene_values_join(char *text, size_t size, const char *const *word, int n)
+{
+    text[0] = '\0';
+    for (int k = 0; k < n; k++) {
+        size_t used = strlen(text);
+        if (*word[k]) snprintf(text + used, size - used, "%s%s", used ? ", " : "", word[k]);
+    }
+}
+
+static int find_word(const struct place *p, const struct scene_node *node, const char *const *word, int n, const char *what)
+{
+    for (int k = 0; k < n; k++)
+        if (*word[k] && strcmp(word[k], node->text) == 0) return k;
+    const char *near = nearest_name(node->text, word, n);
+    char all[512];
+    scene_values_join(all, sizeof all, word, n);
+    if (near && *near) scene_issue_at(p->reader, node, p->path, "unknown %s '%s'; did you mean '%s'?", what, node->text, near);
+    else if (*all) scene_issue_at(p->reader, node, p->path, "unknown %s '%s'; there is: %s", what, node->text, all);
+    else scene_issue_at(p->reader, node, p->path, "unknown %s '%s'", what, node->text);
+    return -1;
+}
+
+static bool read_number(const struct place *p, const struct scene_node *node, const char *path, double *value)
+{
+    const struct scene_key *key = p->key;
+    struct place own = *p;
+    own.path = path;
+    if (!is_kind(&own, node, NODE_SCALAR, "a number")) return false;
+    if (key->special && strcmp(node->text, key->special) == 0) {
+        *value = key->special_value;
+        return true;
+    }
+    char problem[256], range[64];
+    if (!units_parse(node->text, key->unit, value, problem, sizeof problem)) {
+        if (key->special) scene_issue_at(p->reader, node, path, "%s, or '%s'", problem, key->special);
+        else scene_issue_at(p->reader, node, path, "%s", problem);
+        return false;
+    }
+    if (scene_key_in_range(&key->range, *value)) return true;
+    scene_key_range_text(&key->range, range, sizeof range);
+    scene_issue_at(p->reader, node, path, "%s is out of range: %s", node->text, range);
+    return false;
+}
+
+static void write_number(const struct place *p, double value)
+{
+    const struct scene_key *key = p->key;
+    if (key->special && (value == key->special_value)) scene_write(&p->reader->out, "%s", key->special);
+    else scene_write_number(&p->reader->out, value);
+}
+
+static void store_number(const struct place *p, double value, int n)
+{
+    double *to = scene_key_place(p->key, p->record);
+    for (int k = 0; k < n && to; k++) to[k] = value * (p->key->factor != 0 ? p->key->factor : 1);
+    scene_write(&p->reader->out, " ");
+    write_number(p, value);
+    scene_write_end(&p->reader->out);
+}
+
+static void read_vector(const struct place *p, const struct scene_node *node)
+{
+    int n = p->key->width;
+    double value[3];
+    char expected[32];
+    snprintf(expected, sizeof expected, "a list of %d numbers", n);
+    if (!is_kind(p, node, NODE_SEQUENCE, expected)) return;
+    if (node->n != n) {
+        scene_issue_at(p->reader, node, p->path, "expected %s, found %d", expected, node->n);
+        return;
+    }
+    bool good = true;
+    for (int k = 0; k < n; k++) {
+        char *path = fail_format("%s[%d]", p->path, k);
+        good = read_number(p, node->item[k], path, &value[k]) && good;
+        free(path);
+    }
+    if (!good) return;
+    double *to = scene_key_place(p->key, p->record);
+    if (to) memcpy(to, value, (size_t)n * sizeof *to);
+    for (int k = 0; k < n; k++) {
+        scene_write(&p->reader->out, "%s", k ? ", " : " [");
+        write_number(p, value[k]);
+    }
+    scene_write(&p->reader->out, "]\n");
+}
+
+static void read_integer(const struct place *p, const struct scene_node *node)
+{
+    double value;
+    if (!read_number(p, node, p->path, &value)) return;
+    if (value != floor(value) || fabs(value) > 9007199254740992.0) { /* 2^53: beyond, doubles skip integers */
+        scene_issue_at(p->reader, node, p->path, "expected a whole number, found %s", node->text);
+        return;
+    }
+    long *to = scene_key_place(p->key, p->record);
+    if (to) *to = (long)value;
+    scene_write(&p->reader->out, " %ld\n", (long)value);
+}
+
+static void read_bool(const struct place *p, const struct scene_node *node)
+{
+    bool is_true = node->kind == NODE_SCALAR && strcmp(node->text, "true") == 0;
+    if (!is_true && !(node->kind == NODE_SCALAR && strcmp(node->text, "false") == 0)) {
+        if (is_kind(p, node, NODE_SCALAR, "true or false"))
+            scene_issue_at(p->reader, node, p->path, "expected true or false, found '%s'", node->text);
+        return;
+    }
+    bool *to = scene_key_place(p->key, p->record);
+    if (to) *to = is_true;
+    scene_write_value(&p->reader->out, is_true ? "true" : "false");
+}
+
+static void read_choice(const struct place *p, const struct scene_node *node)
+{
+    char buffer[256];
+    const char *word[MAX_WORDS];
+    int n = split_words(p->key->words, buffer, sizeof buffer, word);
+    if (!is_kind(p, node, NODE_SCALAR, "a word")) return;
+    if (p->key->later && strcmp(node->text, p->key->later) == 0) {
+        scene_issue_at(p->reader, node, p->path, "%s %s is not part of this version", scene_key_name(p->key), node->text);
+        return;
+    }
+    int index = find_word(p, node, word, n, "word");
+    if (index < 0) return;
+    int *to = scene_key_place(p->key, p->record);
+    if (to) *to = index;
+    scene_write_value(&p->reader->out, word[index]);
+}
+
+static void read_text(const struct place *p, const struct scene_node *node)
+{
+    if (node->kind != NODE_SCALAR && !is_kind(p, node, NODE_SCALAR, "text")) return;
+    if (p->key->type == KEY_NAME) {
+        const char *problem = scene_values_name_problem(node);
+        if (problem) {
+            scene_issue_at(p->reader, node, p->path, "%s", problem);
+            return;
+        }
+    }
+    char **to = scene_key_place(p->key, p->record);
+    free(*to);
+    *to = fail_strdup(node->text);
+    scene_write(&p->reader->out, " ");
+    scene_write_string(&p->reader->out, node->text);
+    scene_write_end(&p->reader->out);
+}
+
+const char *scene_values_name_problem(const struct scene_node *node)
+{
+    if (node->kind != NODE_SCALAR || !*node->text) return "a name must not be empty";
+    for (const char *c = node->text; *c; c++)
+        if (!isalnum((unsigned char)*c) && *c != '_' && *c != '-' && (unsigned char)*c < 0x80)
+            return "a name may hold letters, digits, '_' and '-' only";
+    return NULL;
+}
+
+static void read_file(const struct place *p, const struct scene_node *node)
+{
+    if (!is_kind(p, node, NODE_SCALAR, "the path of a file")) return;
+    const char *folder = node->text[0] == '/' ? "" : p->reader->folder;
+    char *file = fail_format("%s%s", folder, node->text);
+    struct stat info;
+    const char *problem = NULL;
+    if (stat(file, &info) != 0) problem = strerror(errno);
+    else if (!S_ISREG(info.st_mode)) problem = "not a file";
+    else if (access(file, R_OK) != 0) problem = strerror(errno);
+    char *absolute = problem ? NULL : realpath(file, NULL);
+    if (!problem && !absolute) problem = strerror(errno);
+    if (problem) {
+        scene_issue_at(p->reader, node, p->path, "cannot read '%s': %s", file, problem);
+        free(file);
+        return;
+    }
+    char **to = scene_key_place(p->key, p->record);
+    free(*to);
+    *to = file;
+    scene_write(&p->reader->out, " ");
+    scene_write_string(&p->reader->out, absolute);
+    scene_write_end(&p->reader->out);
+    free(absolute);
+}
+
+/* Index of a material (or wall) by name; -1 and an issue if there is none. Silent where none could be read at all: that has its own issue. */
+static int find_reference(const struct place *p, const struct scene_node *node, bool wall)
+{
+    const struct scene *scene = p->reader->scene;
+    int n = wall ? scene->n_wall : scene->n_material;
+    if (!is_kind(p, node, NODE_SCALAR, wall ? "the name of a wall" : "the name of a material")) return -1;
+    if (n == 0 && scene_issue_is_below(p->reader, wall ? "walls" : "materials")) return -1;
+    const char **name = fail_alloc((size_t)n * sizeof *name);
+    for (int k = 0; k < n; k++) {
+        const char *own = wall ? scene->wall[k].name : scene->material[k].name;
+        name[k] = own ? own : "";
+    }
+    int index = find_word(p, node, name, n, wall ? "wall" : "material");
+    free(name);
+    return index;
+}
+
+static void read_reference(const struct place *p, const struct scene_node *node)
+{
+    int index = find_reference(p, node, p->key->type == KEY_WALL);
+    if (index < 0) return;
+    *(int *)scene_key_place(p->key, p->record) = index;
+    scene_write(&p->reader->out, " ");
+    scene_write_string(&p->reader->out, node->text);
+    scene_write_end(&p->reader->out);
+}
+
+static void read_pair(const struct place *p, const struct scene_node *node)
+{
+    if (!is_kind(p, node, NODE_SEQUENCE, "a list of two materials")) return;
+    if (node->n != 2) {
+        scene_issue_at(p->reader, node, p->path, "expected a list of two materials, found %d", node->n);
+        return;
+    }
+    int *to = scene_key_place(p->key, p->record);
+    for (int k = 0; k < 2; k++) {
+        struct place own = *p;
+        own.path = fail_format("%s[%d]", p->path, k);
+        to[k] = find_reference(&own, node->item[k], false);
+        free((char *)own.path);
+    }
+    if (to[0] < 0 || to[1] < 0) return;
+    scene_write(&p->reader->out, " [");
+    scene_write_string(&p->reader->out, node->item[0]->text);
+    scene_write(&p->reader->out, ", ");
+    scene_write_string(&p->reader->out, node->item[1]->text);
+    scene_write(&p->reader->out, "]\n");
+}
+
+/* Lists out of fixed words, each at most once: `index` gets those found. Returns their number. */
+static int read_word_list(const struct place *p, const struct scene_node *node, const char *words, const char *what, int *index)
+{
+    char buffer[256], expected[64];
+    const char *word[MAX_WORDS];
+    int n_word = split_words(words, buffer, sizeof buffer, word), n = 0;
+    snprintf(expected, sizeof expected, "a list of %ss", what);
+    if (!is_kind(p, node, NODE_SEQUENCE, expected)) return 0;
+    for (int k = 0; k < node->n; k++) {
+        struct place own = *p;
+        own.path = fail_format("%s[%d]", p->path, k);
+        int found = is_kind(&own, node->item[k], NODE_SCALAR, "a word") ? find_word(&own, node->item[k], word, n_word, what) : -1;
+        bool again = false;
+        for (int j = 0; j < n; j++) again = again || index[j] == found;
+        if (found >= 0 && again) scene_issue_at(p->reader, node->item[k], own.path, "'%s' is listed twice", word[found]);
+        else if (found >= 0) index[n++] = found;
+        free((char *)own.path);
+    }
+    scene_write(&p->reader->out, " [");
+    for (int k = 0; k < n; k++) scene_write(&p->reader->out, "%s%s", k ? ", " : "", word[index[k]]);
+    scene_write(&p->reader->out, "]\n");
+    return n;
+}
+
+static void read_axes(const struct place *p, const struct scene_node *node)
+{
+    int index[MAX_WORDS];
+    bool *to = scene_key_place(p->key, p->record);
+    for (int k = read_word_list(p, node, "x|y|z", "direction", index) - 1; k >= 0; k--) to[index[k]] = true;
+}
+
+static void read_words(const struct place *p, const struct scene_node *node)
+{
+    char buffer[256];
+    const char *word[MAX_WORDS];
+    int index[MAX_WORDS], n = read_word_list(p, node, p->key->words, "field", index);
+    split_words(p->key->words, buffer, sizeof buffer, word);
+    char **list = fail_alloc((size_t)n * sizeof *list);
+    for (int k = 0; k < n; k++) list[k] = fail_strdup(word[index[k]]);
+    *(char ***)scene_key_place(p->key, p->record) = list;
+    *(int *)((char *)p->record + p->key->count_at - 1) = n;
+}
+
+void scene_values_read(struct scene_reader *reader, const struct scene_key *key, const struct scene_node *node, const char *path, void *record)
+{
+    struct place p = {reader, key, path, record};
+    double value;
+    switch (key->type) {
+    case KEY_NUMBER:
+        if (read_number(&p, node, path, &value)) store_number(&p, value, 1);
+        break;
+    case KEY_SPAN: /* as a number: both ends */
+        if (read_number(&p, node, path, &value)) store_number(&p, value, 2);
+        break;
+    case KEY_VECTOR: read_vector(&p, node); break;
+    case KEY_INTEGER: read_integer(&p, node); break;
+    case KEY_BOOL: read_bool(&p, node); break;
+    case KEY_CHOICE: read_choice(&p, node); break;
+    case KEY_TEXT:
+    case KEY_NAME: read_text(&p, node); break;
+    case KEY_FILE: read_file(&p, node); break;
+    case KEY_MATERIAL:
+    case KEY_WALL: read_reference(&p, node); break;
+    case KEY_PAIR: read_pair(&p, node); break;
+    case KEY_AXES: read_axes(&p, node); break;
+    case KEY_WORDS: read_words(&p, node); break;
+    case KEY_MAP:
+    case KEY_LIST:
+    case KEY_NAMED: break; /* scene_read.c reads these itself */
+    }
+}

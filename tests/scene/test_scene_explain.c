@@ -1,0 +1,108 @@
+/* The reference page: complete, and in parts. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "scene.h"
+#include "scene_keys.h"
+
+/* What scene_explain prints to *stream (stdout or stderr); owned by the caller. */
+static char *explain(const char *key, FILE **stream, bool expected)
+{
+    char *text = NULL;
+    size_t n;
+    FILE *before = *stream;
+    *stream = open_memstream(&text, &n);
+    bool found = scene_explain(key);
+    fclose(*stream);
+    *stream = before;
+    assert_int_equal(found, expected);
+    return text;
+}
+
+static int lines(const char *text)
+{
+    int n = 0;
+    for (; *text; text++) n += *text == '\n';
+    return n;
+}
+
+static void every_key_has_its_line(void **state)
+{
+    (void)state;
+    char *text = explain(NULL, &stdout, true);
+    for (int k = 0; k < scene_keys_n; k++) {
+        char line[128];
+        snprintf(line, sizeof line, "\n%s ", scene_keys[k].path);
+        if (!strstr(text, line)) fail_msg("%s is not explained", scene_keys[k].path);
+        assert_true(strlen(scene_keys[k].text) > 0);
+    }
+    free(text);
+}
+
+static void a_part(void **state)
+{
+    (void)state;
+    char *text = explain("contacts.normal", &stdout, true);
+    assert_int_equal(lines(text), 1 + 6);
+    assert_non_null(strstr(text, "contacts[].normal.stiffness "));
+    assert_null(strstr(text, "tangential"));
+    free(text);
+    char *again = explain("contacts[0].normal", &stdout, true), *same = explain("contacts[].normal", &stdout, true);
+    assert_string_equal(again, same);
+    free(again);
+    free(same);
+}
+
+static void one_key(void **state)
+{
+    (void)state;
+    char *text = explain("time.step", &stdout, true);
+    assert_string_equal(text, "key        type                  unit   default                 meaning\n"
+                              "time.step  number                s      auto                    "
+                              "time step; auto: safety times the rigorous limit [> 0]\n");
+    free(text);
+}
+
+static void materials_have_names(void **state)
+{
+    (void)state;
+    const char *const key[] = {"materials.NAME.young", "materials.steel.young"};
+    for (int k = 0; k < 2; k++) {
+        char *text = explain(key[k], &stdout, true);
+        assert_int_equal(lines(text), 2);
+        assert_non_null(strstr(text, "Young's modulus"));
+        free(text);
+    }
+    char *text = explain("materials.steel", &stdout, true);
+    assert_int_equal(lines(text), 1 + 3);
+    free(text);
+}
+
+static void unknown_key_names_the_nearest(void **state)
+{
+    (void)state;
+    char *text = explain("contacts.normal.stifness", &stderr, false);
+    assert_string_equal(text, "democles: error: no key 'contacts.normal.stifness'; did you mean 'contacts.normal.stiffness'?\n");
+    free(text);
+    text = explain("xyzzy", &stderr, false);
+    assert_string_equal(text, "democles: error: no key 'xyzzy'; `democles explain` lists all\n");
+    free(text);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_key_has_its_line),
+        cmocka_unit_test(a_part),
+        cmocka_unit_test(one_key),
+        cmocka_unit_test(materials_have_names),
+        cmocka_unit_test(unknown_key_names_the_nearest),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
