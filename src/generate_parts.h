@@ -1,0 +1,20 @@
+/* What the files of generate share. */
+#ifndef DEMOCLES_GENERATE_PARTS_H
+#define DEMOCLES_GENERATE_PARTS_H
+
+#include "generate.h"
+
+/* Elements while they are collected; `room` of them fit. */
+struct generate_list {
+    struct elements_host *elements;
+    int64_t room;
+};
+
+/* One more element of a group, at rest relative to the group's velocities; returns its index. */
+int64_t generate_add(struct generate_list *list, const struct scene *scene, int group, const double x[3], double radius);
+
+void generate_fill(struct generate_list *list, const struct scene *scene, int group, struct scene_errors *errors);
+void generate_read_csv(struct generate_list *list, const struct scene *scene, int group, struct scene_errors *errors);
+void generate_check(const struct scene *scene, const struct elements_host *elements, struct scene_errors *errors);
+
+#endif
