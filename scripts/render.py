@@ -1,0 +1,280 @@
+#!/usr/bin/python3
+"""Pictures and films of a run: elements as spheres coloured by a field, walls as glass.
+
+    scripts/render.py DIR                    DIR/overview.png: up to four moments of the run side by side
+    scripts/render.py DIR --frame last       DIR/frame_000123.png: one frame, by number, `first` or `last`
+    scripts/render.py DIR --film             DIR/film.mp4: all frames
+
+Works without a display (it starts itself again under xvfb-run)."""
+import argparse
+import math
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("dir", metavar="DIR", help="folder of results")
+    parser.add_argument("--frame", metavar="N", help="one frame: its number, first, or last")
+    parser.add_argument("--film", action="store_true", help="all frames as MP4 (needs ffmpeg)")
+    parser.add_argument("--field", metavar="NAME", help="colour by this field; a vector by its magnitude (default: velocity)")
+    parser.add_argument("--range", metavar="LOW,HIGH", help="ends of the colour bar (default: from the frames)")
+    parser.add_argument("--view", metavar="X,Y,Z", help="direction from which to look (default: along the thinnest extent, slightly turned)")
+    parser.add_argument("--size", metavar="WxH", help="pixels (default: 1600x1000, film 1280x720)")
+    parser.add_argument("--fps", type=float, help="frames of the film per second (default: a film of about 8 s, 5 to 25 per second)")
+    parser.add_argument("-o", metavar="FILE", dest="out", help="picture or film to write")
+    return parser.parse_args()
+
+
+def ensure_display():
+    """VTK of Debian 12 draws through X only."""
+    if os.environ.get("DISPLAY"):
+        return
+    if os.environ.get("DEMOCLES_RENDER_XVFB") or not shutil.which("xvfb-run"):
+        sys.exit("render: no display; install xvfb and xauth (scripts/setup does)")
+    os.environ["DEMOCLES_RENDER_XVFB"] = "1"
+    screen = ["xvfb-run", "-a", "-s", "-screen 0 1280x1024x24"]
+    os.execvp(screen[0], screen + [sys.executable, os.path.abspath(__file__), *sys.argv[1:]])
+
+
+if __name__ == "__main__":
+    ARGUMENTS = arguments()
+    ensure_display()
+
+import matplotlib  # noqa: E402 (nothing heavy before the second start)
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy  # noqa: E402
+
+import frames  # noqa: E402
+from render_view import View, corners_of, view_axes  # noqa: E402
+import render_walls  # noqa: E402
+
+SAMPLES = 8  # frames that the ends of the colour bar and the extent of the picture are taken from
+PANELS = 4
+
+
+def spread(items, n):
+    """Up to n items, evenly spaced, first and last among them."""
+    if len(items) <= n:
+        return list(items)
+    return [items[round(k * (len(items) - 1) / (n - 1))] for k in range(n)]
+
+
+class Colours:
+    """A field as numbers for colours: its magnitude, name, unit, ends and map."""
+
+    def __init__(self, samples, name, ends):
+        names = samples[0].names
+        self.name = name or ("velocity" if "velocity" in names else (names or ["radius"])[0])
+        values = [self.of(frame) for frame in samples if len(frame.points)] or [numpy.zeros(1)]
+        everything = numpy.concatenate(values)
+        everything = everything[numpy.isfinite(everything)]
+        self.unit = samples[0].unit(self.name)
+        self.is_vector = samples[0].field(self.name).ndim > 1
+        self.levels = 256
+        self.low, self.high = self.ends(everything, numpy.issubdtype(samples[0].field(self.name).dtype, numpy.integer)) if not ends else ends
+
+    def ends(self, values, is_integer):
+        """Whole numbers get a colour each where they are few; else the fastest half per cent share the last colour."""
+        if not len(values):
+            return 0.0, 1.0
+        low, high = float(values.min()), float(values.max())
+        if is_integer and high - low <= 20:
+            self.levels = int(high - low) + 1
+            return low - 0.5, high + 0.5
+        if self.is_vector:
+            low = 0.0
+        high = float(numpy.percentile(values, 99.5))
+        if not high > low:
+            high = low + max(abs(low), 1.0) * 1e-3 if not self.is_vector else 1.0
+        return low, high
+
+    def of(self, frame):
+        values = numpy.asarray(frame.field(self.name), float)
+        return numpy.linalg.norm(values, axis=1) if values.ndim > 1 else values
+
+    def map(self):
+        """viridis without its darkest part, in which spheres would lose their shading."""
+        return matplotlib.colors.ListedColormap(plt.get_cmap("viridis")(numpy.linspace(0.16, 1, self.levels)))
+
+    def label(self):
+        name = self.name.replace("_", " ")
+        return f"{name} [{self.unit}]" if self.unit else name
+
+
+def extent(samples, walls):
+    """Lowest and highest corner of all that has an end: elements of the sampled frames, and walls."""
+    low, high = numpy.full(3, numpy.inf), numpy.full(3, -numpy.inf)
+    for frame in samples:
+        if len(frame.points):
+            r = frame.field("radius")[:, None]
+            low, high = numpy.minimum(low, (frame.points - r).min(axis=0)), numpy.maximum(high, (frame.points + r).max(axis=0))
+        for wall in walls:
+            ends = render_walls.bounds(wall) if render_walls.is_there(wall, frame.time) else None
+            if ends:
+                rotation, translation = render_walls.pose(wall, frame.time)
+                placed = corners_of(*ends) @ rotation.T + translation
+                low, high = numpy.minimum(low, placed.min(axis=0)), numpy.maximum(high, placed.max(axis=0))
+    if not numpy.all(numpy.isfinite(low)):
+        low, high = -numpy.ones(3), numpy.ones(3)
+    margin = 0.02 * max(high - low)
+    return low - margin, high + margin
+
+
+def time_text(time, end):
+    """In the unit that suits the length of the run."""
+    for unit, factor in (("s", 1.0), ("ms", 1e3), ("µs", 1e6), ("ns", 1e9)):
+        if end * factor >= 1 or unit == "ns":
+            digits = max(0, 3 - math.floor(math.log10(max(end * factor, 1e-9))) - 1)
+            return f"t = {time * factor:.{digits}f} {unit}"
+    return ""
+
+
+class Layout:
+    """A page in pixels: title above, n panels, colour bar and scale below. All panels have the same scale."""
+
+    def __init__(self, width, height, n, title, colours, axes, low, high):
+        self.figure = plt.figure(figsize=(width / 100, height / 100), dpi=100, facecolor="white")
+        self.width, self.height, self.text = width, height, max(height / 62, 8)
+        self.top, self.bottom = (0.07 if title else 0.02), 0.13
+        spans = numpy.ptp(corners_of(low, high) @ numpy.array(axes[:2]).T, axis=0)
+        label = 2.2 * self.text / 72 * 100  # pixels above each panel, for its time
+        area_w, area_h = width, height * (1 - self.top - self.bottom)
+        scales = []
+        for columns in range(1, n + 1):
+            rows = -(-n // columns)
+            panel = area_w / columns, area_h / rows - label
+            scales.append((min(panel[0] * 0.96 / spans[0], panel[1] * 0.98 / spans[1]), -rows, columns, panel))
+        self.pixels_per_metre, _, columns, panel = max(scales)
+        self.panel = int(panel[0]), int(panel[1])
+        self.images, self.labels = [], []
+        for k in range(n):
+            left, top = (k % columns) * area_w / columns, height * self.top + (k // columns) * (panel[1] + label)
+            self.labels.append(self.figure.text((left + panel[0] / 2) / width, 1 - (top + 0.75 * label) / height, "", size=self.text, ha="center"))
+            axis = self.figure.add_axes((left / width, 1 - (top + label + panel[1]) / height, panel[0] / width, panel[1] / height))
+            axis.axis("off")
+            self.images.append(axis.imshow(numpy.full((2, 2, 3), 255, numpy.uint8), extent=(0, 1, 0, 1), aspect="auto", interpolation="antialiased"))
+        if title:
+            self.figure.text(0.02, 1 - self.top / 2, title, size=1.35 * self.text, va="center", weight="bold")
+        self.colour_bar(colours)
+        self.scale_bar()
+
+    def colour_bar(self, colours):
+        axis = self.figure.add_axes((0.3, 0.082, 0.4, 0.02))
+        norm = matplotlib.colors.Normalize(colours.low, colours.high)
+        bar = self.figure.colorbar(matplotlib.cm.ScalarMappable(norm, colours.map()), cax=axis, orientation="horizontal")
+        bar.set_label(colours.label(), size=self.text)
+        if colours.levels < 256:
+            bar.set_ticks(range(math.ceil(colours.low), math.floor(colours.high) + 1, max(1, colours.levels // 10)))
+        bar.ax.tick_params(labelsize=0.9 * self.text)
+
+    def scale_bar(self):
+        """A round length of at most an eighth of the page."""
+        longest = self.width / 8 / self.pixels_per_metre
+        power = 10.0 ** math.floor(math.log10(longest))
+        length = max(m * power for m in (1, 2, 5) if m * power <= longest)
+        factor, unit = next((f, u) for f, u in ((1, "m"), (1e3, "mm"), (1e6, "µm"), (1e9, "nm")) if length * f >= 0.999 or u == "nm")
+        pixels = length * self.pixels_per_metre / self.width
+        line = matplotlib.lines.Line2D((0.02, 0.02 + pixels), (0.092, 0.092), color="black", lw=self.text / 6, solid_capstyle="butt")
+        self.figure.add_artist(line)
+        self.figure.text(0.02 + pixels / 2, 0.075, f"{length * factor:g} {unit}", size=0.9 * self.text, ha="center", va="top")
+
+    def put(self, k, image, text):
+        self.images[k].set_data(image)
+        self.labels[k].set_text(text)
+
+    def pixels(self):
+        """[height][width][3] bytes."""
+        self.figure.canvas.draw()
+        return numpy.asarray(self.figure.canvas.buffer_rgba())[:, :, :3]
+
+
+class Picture:
+    """One page of n panels of a run, drawn again and again for films."""
+
+    def __init__(self, options, paths, n, samples, size, sharpness):
+        scene = frames.scene(options.dir)
+        self.walls = scene.get("walls") or []
+        self.end = max(frames.Frame(paths[-1]).time, 1e-12)
+        ends = tuple(float(v) for v in options.range.split(",")) if options.range else None
+        self.colours = Colours(samples, options.field, ends)
+        low, high = extent(samples, self.walls)
+        towards = [float(v) for v in options.view.split(",")] if options.view else None
+        axes = view_axes(low, high, scene.get("gravity"), towards)
+        title = scene.get("title") or pathlib.Path(options.dir).resolve().name
+        self.layout = Layout(*size, n, title, self.colours, axes, low, high)
+        colour_table = self.colours.map()(numpy.linspace(0, 1, self.colours.levels))
+        self.view = View(self.layout.panel, sharpness, axes, (low, high), self.layout.pixels_per_metre, self.walls, colour_table)
+
+    def draw(self, chosen):
+        for k, frame in enumerate(chosen):
+            values = self.colours.of(frame) if len(frame.points) else numpy.zeros(0)
+            image = self.view.draw(frame, values, (self.colours.low, self.colours.high))
+            self.layout.put(k, image, time_text(frame.time, self.end))
+        return self.layout.pixels()
+
+
+def write_film(options, paths, size):
+    if not shutil.which("ffmpeg"):
+        sys.exit("render: a film needs ffmpeg (scripts/setup installs it)")
+    samples = [frames.Frame(path) for path in spread(paths, SAMPLES)]
+    picture = Picture(options, paths, 1, samples, size, 1)
+    fps = options.fps or min(25, max(5, len(paths) / 8))
+    out = options.out or os.path.join(options.dir, "film.mp4")
+    command = ["ffmpeg", "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{size[0]}x{size[1]}", "-r", str(fps), "-i", "-",
+               "-c:v", "libx264", "-preset", "veryfast", "-crf", "20", "-pix_fmt", "yuv420p", "-movflags", "+faststart", out]
+    with subprocess.Popen(command, stdin=subprocess.PIPE) as film:
+        for k, path in enumerate(paths):
+            film.stdin.write(picture.draw([frames.Frame(path)]).tobytes())
+            if sys.stdout.isatty():
+                print(f"\rframe {k + 1} of {len(paths)}", end="", flush=True)
+        film.stdin.close()
+        if sys.stdout.isatty():
+            print()
+        if film.wait():
+            sys.exit(f"render: ffmpeg could not write {out}")
+    return out
+
+
+def with_elements(paths):
+    """Without the frames at the end in which hardly any elements are left (a twentieth of those of the first frame)."""
+    n, least = len(paths), len(frames.Frame(paths[0]).points) / 20
+    while n > 1 and len(frames.Frame(paths[n - 1]).points) < least:
+        n -= 1
+    return paths[:n]
+
+
+def write_picture(options, paths, size):
+    if options.frame is None:
+        chosen, name = spread(with_elements(paths), PANELS), "overview.png"
+    else:
+        if options.frame in ("first", "last"):
+            path = paths[0 if options.frame == "first" else -1]
+        else:
+            path = pathlib.Path(options.dir) / f"frame_{int(options.frame):06d}.hdf"
+            if path not in paths:
+                sys.exit(f"render: there is no {path}; the last is {paths[-1].name}")
+        chosen, name = [path], path.stem + ".png"
+    chosen = [frames.Frame(path) for path in chosen]
+    picture = Picture(options, paths, len(chosen), chosen, size, 2)
+    out = options.out or os.path.join(options.dir, name)
+    plt.imsave(out, picture.draw(chosen))
+    return out
+
+
+def main(options):
+    paths = frames.paths(options.dir)
+    if not paths:
+        sys.exit(f"render: no frames in {options.dir}")
+    size = [int(v) for v in (options.size or ("1280x720" if options.film else "1600x1000")).split("x")]
+    size = [v - v % 2 for v in size]  # films want even numbers
+    print(write_film(options, paths, size) if options.film else write_picture(options, paths, size))
+
+
+if __name__ == "__main__":
+    main(ARGUMENTS)

@@ -1,0 +1,156 @@
+"""One view of elements and walls by VTK, without any text: parallel projection, so that all panels and frames have one scale."""
+import numpy
+import vtkmodules.vtkRenderingOpenGL2  # noqa: F401 (chooses OpenGL)
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkLookupTable, vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkFiltersCore import vtkFeatureEdges
+from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow, vtkWindowToImageFilter
+from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLSphereMapper
+
+import render_walls
+
+WALL, EDGE = (0.45, 0.52, 0.60), (0.25, 0.30, 0.36)
+
+
+def corners_of(low, high):
+    return numpy.array([[(low, high)[k >> a & 1][a] for a in range(3)] for k in range(8)], float)
+
+
+def view_axes(low, high, gravity, towards=None):
+    """Right, up and back (to the eye) of the picture, unit vectors. Up is against gravity; the eye looks along the thinnest extent, a little from
+    the side and from above, so that it is seen to be a body."""
+    gravity = numpy.array([float(g) for g in gravity or (0, 0, 0)])
+    up = -gravity / numpy.linalg.norm(gravity) if numpy.linalg.norm(gravity) > 0 else numpy.array([0.0, 0.0, 1.0])
+    if towards is None:
+        thin = int(numpy.argmin(high - low))
+        back = numpy.eye(3)[thin] * (-1 if thin == 1 else 1)  # from -y the x axis points to the right
+        if abs(back @ up) > 0.9:  # thin in the direction of gravity: still from the side, well above
+            others = sorted((a for a in range(3) if a != thin), key=lambda a: (high - low)[a])
+            back = numpy.eye(3)[others[0]] * (-1 if others[0] == 1 else 1) + 0.7 * up
+        else:
+            back = back + 0.32 * numpy.cross(up, back) + 0.22 * up
+    else:
+        back = numpy.array(towards, float)
+    back /= numpy.linalg.norm(back)
+    if abs(back @ up) > 0.999:
+        up = numpy.eye(3)[1] if abs(back[1]) < 0.9 else numpy.eye(3)[0]
+    right = numpy.cross(up, back)
+    right /= numpy.linalg.norm(right)
+    return right, numpy.cross(back, right), back
+
+
+def single_points(n):
+    """n cells of one point each: what has no cells is not drawn."""
+    cells = vtkCellArray()
+    begin, ids = (numpy_to_vtkIdTypeArray(numpy.arange(m, dtype=numpy.int64), deep=True) for m in (n + 1, n))
+    cells.SetData(begin, ids)
+    return cells
+
+
+class View:
+    """draw() gives [height][width][3] bytes. `sharpness` times as many pixels are drawn and averaged."""
+
+    def __init__(self, panel, sharpness, axes, box, pixels_per_metre, walls, colours):
+        self.panel, self.sharpness = panel, sharpness
+        self.renderer, self.window = vtkRenderer(), vtkRenderWindow()
+        self.renderer.SetBackground(1, 1, 1)
+        self.renderer.UseFXAAOn()
+        self.window.SetOffScreenRendering(1)
+        self.window.SetMultiSamples(0)
+        self.window.SetSize(panel[0] * sharpness, panel[1] * sharpness)
+        self.window.AddRenderer(self.renderer)
+        self.add_elements(colours)
+        self.walls = [(wall, self.add_wall(wall, *box)) for wall in walls]
+        self.look(axes, box, pixels_per_metre)
+        self.grab = vtkWindowToImageFilter()
+        self.grab.SetInput(self.window)
+        self.grab.ReadFrontBufferOff()
+
+    def add_elements(self, colours):
+        table = vtkLookupTable()
+        table.SetNumberOfTableValues(len(colours))
+        for k, colour in enumerate(colours):
+            table.SetTableValue(k, *colour)
+        self.elements, self.mapper, self.actor = vtkPolyData(), vtkOpenGLSphereMapper(), vtkActor()
+        self.mapper.SetInputData(self.elements)
+        self.mapper.SetLookupTable(table)
+        self.mapper.SetUseLookupTableScalarRange(0)
+        self.mapper.SetScaleArray("radius")
+        self.actor.SetMapper(self.mapper)
+        look = self.actor.GetProperty()
+        look.SetAmbient(0.3)
+        look.SetDiffuse(0.8)
+        look.SetSpecular(0.12)
+        look.SetSpecularPower(25)
+        self.renderer.AddActor(self.actor)
+
+    def add_wall(self, wall, low, high):
+        """Glass, and its edges; both move together. Nothing for what cannot be drawn."""
+        surface = render_walls.surface_of(wall, low, high)
+        if surface is None:
+            return []
+        edges = vtkFeatureEdges()
+        edges.SetInputData(surface)
+        edges.SetFeatureAngle(25)
+        edges.ManifoldEdgesOff()
+        edges.NonManifoldEdgesOff()
+        edges.ColoringOff()
+        actors = []
+        for k in range(2):
+            mapper, actor = vtkPolyDataMapper(), vtkActor()
+            mapper.SetInputData(surface) if k == 0 else mapper.SetInputConnection(edges.GetOutputPort())
+            mapper.ScalarVisibilityOff()
+            actor.SetMapper(mapper)
+            look = actor.GetProperty()
+            look.SetColor(*(WALL, EDGE)[k])
+            look.SetOpacity((0.16, 1.0)[k])
+            look.SetLighting(False)
+            look.SetLineWidth(1.2 * self.sharpness)
+            self.renderer.AddActor(actor)
+            actors.append(actor)
+        return actors
+
+    def look(self, axes, box, pixels_per_metre):
+        right, up, back = axes
+        corners = corners_of(*box)
+        seen = numpy.array([corners @ right, corners @ up, corners @ back])
+        middle = (seen.min(axis=1) + seen.max(axis=1)) / 2
+        focus = middle[0] * right + middle[1] * up + middle[2] * back
+        depth = numpy.ptp(seen[2]) + 1e-12
+        camera = self.renderer.GetActiveCamera()
+        camera.ParallelProjectionOn()
+        camera.SetFocalPoint(*focus)
+        camera.SetPosition(*(focus + 2 * depth * back))
+        camera.SetViewUp(*up)
+        camera.SetParallelScale(self.panel[1] / pixels_per_metre / 2)
+        camera.SetClippingRange(0.5 * depth, 3.5 * depth)
+
+    def draw(self, frame, values, ends):
+        points = vtkPoints()
+        points.SetData(numpy_to_vtk(numpy.ascontiguousarray(frame.points, numpy.float32), deep=True))
+        self.elements.Initialize()
+        self.elements.SetPoints(points)
+        self.elements.SetVerts(single_points(len(frame.points)))
+        self.actor.SetVisibility(len(frame.points) > 0)
+        if len(frame.points):
+            for name, array in (("radius", frame.field("radius")), ("colour", values)):
+                data = numpy_to_vtk(numpy.ascontiguousarray(array, numpy.float32), deep=True)
+                data.SetName(name)
+                self.elements.GetPointData().AddArray(data)
+            self.elements.GetPointData().SetActiveScalars("colour")
+            self.mapper.SetScalarRange(*ends)
+        for wall, actors in self.walls:
+            for actor in actors:
+                actor.SetVisibility(render_walls.is_there(wall, frame.time))
+                actor.SetUserMatrix(render_walls.matrix(*render_walls.pose(wall, frame.time)))
+        self.window.Render()
+        self.grab.Modified()
+        self.grab.Update()
+        image = self.grab.GetOutput()
+        width, height, _ = image.GetDimensions()
+        pixels = vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width, -1)[::-1, :, :3]
+        s = self.sharpness
+        if s == 1:
+            return pixels
+        return pixels.reshape(height // s, s, width // s, s, 3).mean(axis=(1, 3)).astype(numpy.uint8)

@@ -1,0 +1,20 @@
+/* HDF5 without MPI: checksum of a dataset, its comparison on reading, and HDF5's own words on an error. */
+#ifndef DEMOCLES_H5_CHECK_H
+#define DEMOCLES_H5_CHECK_H
+
+#include "column.h"
+
+#include <hdf5.h>
+
+/* Sum mod 2^64 over numbers of mix(mix(k + G) xor bits): k the flat index from 0 over all ranks, bits as stored and zero extended, mix and G of
+ * digest.h. Independent of how the rows are spread over ranks. data [n]; `begin`: flat index of the first number. Text: its bytes as U8. */
+uint64_t h5_check_sum(enum column_type type, const void *data, int64_t n, int64_t begin);
+
+/* Reads a dataset of a file (any of the column types, or a fixed-length string) and compares its attribute `checksum`. Serial.
+ * Returns NULL if they agree, else what is wrong, as static text. */
+const char *h5_check_dataset(hid_t dataset);
+
+/* HDF5's error stack in short: what was tried, and the innermost reason. Static storage, overwritten by the next call. */
+const char *h5_check_error(void);
+
+#endif

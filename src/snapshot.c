@@ -1,0 +1,197 @@
+#include "snapshot.h"
+#include "fail.h"
+#include "h5_check.h"
+#include "h5_write.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+char *snapshot_path(const char *dir, int64_t index)
+{
+    return fail_format("%s/frame_%06lld.hdf", dir, (long long)index);
+}
+
+static int64_t row_bytes(const struct table *table)
+{
+    int64_t sum = 0;
+    for (int k = 0; k < table->n_column; k++) sum += (int64_t)column_type_size(table->column[k].type) * table->column[k].width;
+    return sum;
+}
+
+/* An upper estimate of the file's size, over all ranks: data, and room for headers and attributes of every dataset. */
+static int64_t estimate(const struct comm *comm, const struct frame *frame)
+{
+    enum { PER_POINT = 3 * 8 + 1, PER_DATASET = 4096, FIXED = 65536 };
+    int64_t sum = frame->points.n_row * (row_bytes(&frame->points) + PER_POINT), n_dataset = frame->points.n_column + frame->n_state;
+    for (int t = 0; t < frame->n_state; t++) {
+        sum += frame->state[t].n_row * row_bytes(&frame->state[t]);
+        n_dataset += frame->state[t].n_column;
+    }
+    sum += 8 * (5 + frame->n_state); /* this rank's part of the counts, and its last offset */
+    comm_sum_i64(comm, &sum, 1);
+    return sum + n_dataset * PER_DATASET + FIXED + (int64_t)strlen(frame->resolved);
+}
+
+static void write_i64(struct h5_writer *writer, hid_t group, const char *name, const char *description, const int64_t *data, int64_t n)
+{
+    struct column column = {name, "1", description, COLUMN_I64, 1, data};
+    h5_column(writer, group, &column, h5_rows_of(writer->comm, n));
+}
+
+/* One vertex per point: connectivity 0..n-1 and offsets 0..n count within the rank's own part. */
+static void write_cells(struct h5_writer *writer, hid_t group, int64_t n)
+{
+    enum { VTK_VERTEX = 1 };
+    int64_t *count = fail_alloc((size_t)(n + 1) * sizeof *count);
+    unsigned char *kind = fail_alloc((size_t)n);
+    for (int64_t i = 0; i <= n; i++) count[i] = i;
+    memset(kind, VTK_VERTEX, (size_t)n);
+    struct column types = {"Types", "1", "VTK cell type: vertex", COLUMN_U8, 1, kind};
+    write_i64(writer, group, "NumberOfPoints", "points of each rank's part", &n, 1);
+    write_i64(writer, group, "NumberOfCells", "cells of each rank's part", &n, 1);
+    write_i64(writer, group, "NumberOfConnectivityIds", "point indices of each rank's part", &n, 1);
+    write_i64(writer, group, "Connectivity", "point of each cell, counted within its part", count, n);
+    write_i64(writer, group, "Offsets", "begin of each cell in Connectivity, and the end, within each part", count, n + 1);
+    h5_column(writer, group, &types, h5_rows_of(writer->comm, n));
+    free(kind);
+    free(count);
+}
+
+static void write_grid(struct h5_writer *writer, const struct frame *frame, struct h5_rows rows)
+{
+    const struct table *points = &frame->points;
+    const int64_t version[2] = {1, 0};
+    const char type[] = "UnstructuredGrid"; /* 16 bytes, no NUL, ASCII: else ParaView 5.11 refuses the file */
+    hid_t grid = h5_group(writer, writer->file, "VTKHDF");
+    h5_attribute(writer, grid, "Version", COLUMN_I64, 2, version);
+    h5_attribute_text(writer, grid, "Type", type);
+    struct column position = points->column[0];
+    position.name = "Points";
+    h5_column(writer, grid, &position, rows);
+    write_cells(writer, grid, rows.mine);
+    hid_t field = h5_group(writer, grid, "FieldData");
+    struct column time = {"TimeValue", "s", "simulated time", COLUMN_F64, 1, &frame->time};
+    h5_column(writer, field, &time, h5_rows_of(writer->comm, writer->comm->rank == 0));
+    H5Gclose(field);
+    hid_t data = h5_group(writer, grid, "PointData");
+    for (int k = 1; k < points->n_column; k++) h5_column(writer, data, &points->column[k], rows);
+    H5Gclose(data);
+    H5Gclose(grid);
+}
+
+/* Index of the point column that is this column of the state (the same memory under the same name on every rank), or -1. */
+static int64_t same_point_column(const struct comm *comm, const struct table *points, const struct table *table, const struct column *column)
+{
+    int64_t found[2] = {-1, 1}; /* smallest and, negated, largest over the ranks agree where all found the same */
+    for (int k = 0; k < points->n_column; k++) {
+        const struct column *other = &points->column[k];
+        if (strcmp(other->name, column->name) || other->type != column->type || other->width != column->width) continue;
+        if (points->n_row == table->n_row && (other->data == column->data || table->n_row == 0)) found[0] = k;
+    }
+    found[1] = -found[0];
+    comm_min_i64(comm, found, 2);
+    return found[0] == -found[1] ? found[0] : -1;
+}
+
+static void write_table(struct h5_writer *writer, hid_t state, hid_t counts, const struct frame *frame, const struct table *table)
+{
+    struct h5_rows rows = h5_rows_of(writer->comm, table->n_row);
+    hid_t group = h5_group(writer, state, table->name);
+    for (int k = 0; k < table->n_column; k++) {
+        const struct column *column = &table->column[k];
+        int64_t same = same_point_column(writer->comm, &frame->points, table, column);
+        if (same < 0) {
+            h5_column(writer, group, column, rows);
+            continue;
+        }
+        char *path = same > 0 ? fail_format("/VTKHDF/PointData/%s", column->name) : fail_strdup("/VTKHDF/Points");
+        h5_link(writer, path, group, column->name);
+        free(path);
+    }
+    H5Gclose(group);
+    write_i64(writer, counts, table->name, "rows of each rank", &table->n_row, 1);
+}
+
+static void write_state(struct h5_writer *writer, const struct frame *frame, struct h5_rows points)
+{
+    const int64_t version = SNAPSHOT_FORMAT_VERSION;
+    hid_t state = h5_group(writer, writer->file, "democles");
+    h5_attribute(writer, state, "format_version", COLUMN_I64, 0, &version);
+    h5_attribute(writer, state, "step", COLUMN_I64, 0, &frame->step);
+    h5_attribute(writer, state, "time", COLUMN_F64, 0, &frame->time);
+    h5_attribute(writer, state, "index", COLUMN_I64, 0, &frame->index);
+    h5_attribute(writer, state, "n_element", COLUMN_I64, 0, &points.total);
+    for (int k = 0; k < frame->n_scalar; k++) {
+        const struct frame_scalar *scalar = &frame->scalar[k];
+        const void *value = scalar->type == COLUMN_F64 ? (const void *)&scalar->f64 : &scalar->i64;
+        h5_attribute(writer, state, scalar->name, scalar->type, 0, value);
+    }
+    h5_text(writer, state, "resolved", "the scene with all defaults, as YAML", frame->resolved);
+    hid_t counts = h5_group(writer, state, "rows");
+    for (int t = 0; t < frame->n_state; t++) write_table(writer, state, counts, frame, &frame->state[t]);
+    H5Gclose(counts);
+    H5Gclose(state);
+}
+
+void snapshot_write(const struct comm *comm, const char *dir, const struct frame *frame)
+{
+    char *path = snapshot_path(dir, frame->index);
+    struct h5_writer *writer = h5_create(comm, path, estimate(comm, frame));
+    struct h5_rows points = h5_rows_of(comm, frame->points.n_row);
+    write_grid(writer, frame, points);
+    write_state(writer, frame, points);
+    h5_finish(writer);
+    free(path);
+}
+
+/* What is wrong with the object `name` below `parent` (and with all below it), or NULL. An own walk: H5Ovisit of HDF5 1.10 loses handles where an
+ * object cannot be opened. Hard links are read twice. */
+static char *check_object(hid_t parent, const char *name, const char *path)
+{
+    hid_t object = H5Oopen(parent, name, H5P_DEFAULT);
+    if (object < 0) return fail_format("%s: cannot be opened", path);
+    char *wrong = NULL, child[256];
+    H5G_info_t info = {.nlinks = 0};
+    if (H5Iget_type(object) == H5I_DATASET) {
+        const char *text = h5_check_dataset(object);
+        if (text) wrong = fail_format("%s: %s", path, text);
+    } else if (H5Gget_info(object, &info) < 0) {
+        wrong = fail_format("%s: cannot be listed", path);
+    }
+    for (hsize_t k = 0; k < info.nlinks && !wrong; k++) {
+        ssize_t n = H5Lget_name_by_idx(object, ".", H5_INDEX_NAME, H5_ITER_INC, k, child, sizeof child, H5P_DEFAULT);
+        char *child_path = fail_format("%s/%s", path, n > 0 ? child : "?");
+        wrong = n > 0 ? check_object(object, child, child_path) : fail_format("%s: cannot be listed", path);
+        free(child_path);
+    }
+    H5Oclose(object);
+    return wrong;
+}
+
+static char *check_file(hid_t file)
+{
+    const char *const group[] = {"VTKHDF", "democles"};
+    char *wrong = NULL;
+    for (int k = 0; k < 2 && !wrong; k++) {
+        htri_t exists = H5Lexists(file, group[k], H5P_DEFAULT);
+        if (exists < 0) wrong = fail_strdup("its list of groups cannot be read");
+        else if (exists == 0) wrong = fail_format("no frame of democles: it has no group %s", group[k]);
+        else wrong = check_object(file, group[k], group[k]);
+    }
+    return wrong;
+}
+
+char *snapshot_check(const char *path)
+{
+    H5E_auto2_t print;
+    void *print_data;
+    H5dont_atexit(); /* HDF5 1.10 loses count of a damaged file, and would complain on stderr when the program ends */
+    H5Eget_auto2(H5E_DEFAULT, &print, &print_data);
+    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+    hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    char *wrong = file < 0 ? fail_format("cannot be opened: %s", h5_check_error()) : check_file(file);
+    if (file >= 0) H5Fclose(file);
+    H5Eset_auto2(H5E_DEFAULT, print, print_data);
+    return wrong;
+}
