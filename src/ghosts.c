@@ -1,0 +1,229 @@
+#include "ghosts.h"
+
+#include <math.h>
+#include <sched.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fail.h"
+
+struct ghosts *ghosts_create(
+    struct device *dev, const struct comm *comm, const struct features *features, const struct program *lists, const double period[3])
+{
+    struct ghosts *g = fail_alloc(sizeof *g);
+    g->comm = comm;
+    g->features = features;
+    memcpy(g->period, period, sizeof g->period);
+    struct buffer *all[] = {&g->index, &g->pick, &g->packed, &g->send_staging, &g->recv_staging};
+    static const char *const name[] = {"ghost index", "ghost pick", "ghost pack", "ghost send", "ghost receive"};
+    for (int i = 0; i < 5; i++) {
+        buffer_init(all[i], name[i]);
+        if (i < 3) buffer_reserve(dev, all[i], 64);
+    }
+    g->select = launch_create(lists, "select_ghosts");
+    g->compact = launch_create(lists, "record_select");
+    g->gather = launch_create(lists, "record_gather");
+    launch_set_real_if(g->select, "period_x", period[0]);
+    launch_set_real_if(g->select, "period_y", period[1]);
+    launch_set_real_if(g->select, "period_z", period[2]);
+    return g;
+}
+
+void ghosts_free(struct device *dev, struct ghosts *g)
+{
+    if (!g) return;
+    ghosts_settle(dev, g);
+    halo_free(g->halo);
+    struct buffer *all[] = {&g->index, &g->pick, &g->packed, &g->send_staging, &g->recv_staging};
+    for (int i = 0; i < 5; i++) buffer_free(dev, all[i]);
+    launch_free(g->select);
+    launch_free(g->compact);
+    launch_free(g->gather);
+    free(g);
+}
+
+int64_t ghosts_bytes_sent(const struct ghosts *g)
+{
+    return g->bytes_before + (g->halo ? g->halo->bytes_sent : 0);
+}
+
+static void release(cl_event *event)
+{
+    if (!*event) return;
+    check_cl(clWaitForEvents(1, event));
+    check_cl(clReleaseEvent(*event));
+    *event = NULL;
+}
+
+void ghosts_settle(struct device *dev, struct ghosts *g)
+{
+    if (g->halo) halo_end(g->halo);
+    release(&g->written_event);
+    release(&g->read_event);
+    release(&g->packed_event);
+    device_finish(dev);
+}
+
+/* What a rank tells the others about the elements that it owns. */
+struct box {
+    double low[3], high[3], reach;
+    int64_t n;
+};
+
+static double gap(double low_a, double high_a, double low_b, double high_b, double period)
+{
+    double d = fmax(fmax(low_b - high_a, low_a - high_b), 0);
+    if (period > 0) d = fmin(d, fmin(fmax(low_b + period - high_a, 0), fmax(low_a + period - high_b, 0)));
+    return d;
+}
+
+static bool may_meet(const struct ghosts *g, const struct box *a, const struct box *b)
+{
+    double sum = 0, reach = (a->reach + b->reach) * 1.001;
+    if (a->n == 0 || b->n == 0) return false;
+    for (int k = 0; k < 3; k++) {
+        double d = gap(a->low[k], a->high[k], b->low[k], b->high[k], g->period[k]);
+        sum += d * d;
+    }
+    return sum < reach * reach;
+}
+
+/* Appends to g->index the owned elements that the rank with `box` needs; returns how many. */
+static int64_t select_for(
+    struct device *dev, struct ghosts *g, struct scan *scan, const struct particles *p, const struct box *box, struct buffer *piece)
+{
+    static const char *const low[] = {"low_x", "low_y", "low_z"}, *const high[] = {"high_x", "high_y", "high_z"};
+    launch_set_int(g->select, "n", (int)p->n_owned);
+    launch_bind_buffer(g->select, "position", &p->field[FIELD_STATE].now);
+    launch_bind_buffer(g->select, "reach", &p->reach);
+    launch_bind_buffer(g->select, "at", &g->pick);
+    for (int a = 0; a < 3; a++) {
+        launch_set_real(g->select, low[a], box->low[a]);
+        launch_set_real(g->select, high[a], box->high[a]);
+    }
+    launch_set_real(g->select, "far_reach", box->reach);
+    launch_run(g->select, dev->compute, p->n_owned, 0, NULL, NULL);
+    int64_t n = scan_total(dev, scan, &g->pick, p->n_owned);
+    buffer_reserve(dev, piece, (size_t)n * sizeof(cl_int));
+    launch_set_int(g->compact, "n", (int)p->n_owned);
+    launch_bind_buffer(g->compact, "at", &g->pick);
+    launch_bind_buffer(g->compact, "index", piece);
+    launch_run(g->compact, dev->compute, p->n_owned, 0, NULL, NULL);
+    return n;
+}
+
+/* Sends rows of `from` picked by g->index to their neighbours and stores what comes in at row n_owned of it. */
+static void exchange_rows(struct device *dev, struct ghosts *g, const struct particles *p, struct buffer *from, size_t bytes)
+{
+    char *send = fail_alloc((size_t)g->n_send * bytes), *recv = fail_alloc((size_t)g->n_recv * bytes);
+    buffer_reserve(dev, &g->packed, (size_t)g->n_send * bytes);
+    launch_set_int(g->gather, "n", (int)g->n_send);
+    launch_set_int(g->gather, "words", (int)(bytes / 4));
+    launch_bind_buffer(g->gather, "index", &g->index);
+    launch_bind_buffer(g->gather, "from", from);
+    launch_bind_buffer(g->gather, "to", &g->packed);
+    launch_run(g->gather, dev->compute, g->n_send, 0, NULL, NULL);
+    buffer_read(dev, &g->packed, 0, (size_t)g->n_send * bytes, send);
+    halo_exchange(g->halo, send, recv, bytes);
+    buffer_write(dev, from, (size_t)p->n_owned * bytes, (size_t)g->n_recv * bytes, recv);
+    free(send);
+    free(recv);
+}
+
+/* The index lists for all neighbours, one after the other, on the device. */
+static void choose(struct device *dev, struct ghosts *g, struct scan *scan, const struct particles *p, const struct box *all, int64_t *count_to)
+{
+    const struct comm *comm = g->comm;
+    cl_int *index = NULL;
+    struct buffer piece;
+    buffer_init(&piece, "ghost piece");
+    g->n_send = 0;
+    buffer_reserve(dev, &g->pick, ((size_t)p->n_owned + 1) * sizeof(cl_int));
+    for (int r = 0; r < comm->n_rank; r++) {
+        count_to[r] = 0;
+        if (r == comm->rank || !may_meet(g, &all[comm->rank], &all[r])) continue;
+        count_to[r] = select_for(dev, g, scan, p, &all[r], &piece);
+        index = fail_realloc(index, (size_t)(g->n_send + count_to[r]) * sizeof *index);
+        buffer_read(dev, &piece, 0, (size_t)count_to[r] * sizeof *index, index + g->n_send);
+        g->n_send += count_to[r];
+    }
+    buffer_reserve(dev, &g->index, (size_t)g->n_send * sizeof(cl_int));
+    buffer_write(dev, &g->index, 0, (size_t)g->n_send * sizeof(cl_int), index);
+    buffer_free(dev, &piece);
+    free(index);
+}
+
+void ghosts_plan(struct device *dev, struct ghosts *g, struct scan *scan, struct particles *p, const struct cells_bounds *own)
+{
+    const struct comm *comm = g->comm;
+    p->n_ghost = 0;
+    if (comm->n_rank == 1) return;
+    struct box mine = {{0}, {0}, own->reach_max, p->n_owned}, *all = fail_alloc((size_t)comm->n_rank * sizeof *all);
+    int64_t *count_to = fail_alloc((size_t)comm->n_rank * sizeof *count_to);
+    memcpy(mine.low, own->low, sizeof mine.low);
+    memcpy(mine.high, own->high, sizeof mine.high);
+    comm_gather(comm, &mine, all, sizeof mine);
+    choose(dev, g, scan, p, all, count_to);
+    g->bytes_before = ghosts_bytes_sent(g);
+    halo_free(g->halo);
+    g->halo = halo_create(comm, count_to);
+    g->n_recv = g->halo->recv_begin[g->halo->n_recv];
+    p->n_ghost = g->n_recv;
+    particles_reserve(dev, p, g->features, p->n_owned + p->n_ghost, p->n_owned);
+    exchange_rows(dev, g, p, &p->field[FIELD_GID].now, p->field[FIELD_GID].bytes);
+    exchange_rows(dev, g, p, &p->reach, particles_preal(g->features));
+    g->record = p->field[FIELD_STATE].bytes;
+    exchange_rows(dev, g, p, &p->field[FIELD_STATE].now, g->record);
+    buffer_reserve_staging(dev, &g->send_staging, (size_t)g->n_send * g->record);
+    buffer_reserve_staging(dev, &g->recv_staging, (size_t)g->n_recv * g->record);
+    buffer_reserve(dev, &g->packed, (size_t)g->n_send * g->record);
+    halo_bind(g->halo, g->send_staging.host, g->recv_staging.host, g->record);
+    launch_set_int(g->gather, "n", (int)g->n_send);
+    launch_set_int(g->gather, "words", (int)(g->record / 4));
+    launch_bind_buffer(g->gather, "from", &p->field[FIELD_STATE].now);
+    free(count_to);
+    free(all);
+}
+
+void ghosts_begin(struct device *dev, struct ghosts *g, const struct particles *p)
+{
+    if (g->comm->n_rank == 1) return;
+    halo_end(g->halo); /* of the step before: staging is free */
+    launch_bind_buffer(g->gather, "from", &p->field[FIELD_STATE].now);
+    launch_run(g->gather, dev->compute, g->n_send, 0, NULL, &g->packed_event);
+    check_cl(clFlush(dev->compute));
+    buffer_read_begin(dev, dev->copy, &g->packed, 0, (size_t)g->n_send * g->record, g->send_staging.host, 1, &g->packed_event, &g->read_event);
+    check_cl(clFlush(dev->copy));
+    release(&g->written_event); /* long done: the receive staging is free */
+    halo_begin_recv(g->halo);
+}
+
+/* Until the packed records are on the host. On a CPU the host thread sleeps, for the device computes on the same cores; elsewhere it drives MPI, and
+ * does
+ * not trust the driver's wait, which may be a spin without progress. */
+static void wait_packed(struct device *dev, struct ghosts *g)
+{
+    if (dev->type & CL_DEVICE_TYPE_CPU) check_cl(clWaitForEvents(1, &g->read_event));
+    while (!device_event_done(g->read_event)) {
+        halo_poll(g->halo);
+        sched_yield();
+    }
+}
+
+const cl_event *ghosts_swap(struct device *dev, struct ghosts *g, struct particles *p, struct timers *timers)
+{
+    if (g->comm->n_rank == 1) return NULL;
+    wait_packed(dev, g);
+    timer_begin(timers, TIMER_EXCHANGE);
+    halo_begin_send(g->halo);
+    timer_begin(timers, TIMER_WAIT);
+    while (!halo_poll(g->halo)) sched_yield();
+    timer_end(timers, TIMER_WAIT);
+    buffer_write_begin(dev, dev->copy, &p->field[FIELD_STATE].now, (size_t)p->n_owned * g->record, (size_t)g->n_recv * g->record,
+        g->recv_staging.host, 0, NULL, &g->written_event);
+    check_cl(clFlush(dev->copy));
+    release(&g->read_event);
+    release(&g->packed_event);
+    timer_end(timers, TIMER_EXCHANGE);
+    return &g->written_event;
+}

@@ -1,0 +1,76 @@
+/* democles: arguments, MPI, one command, exit code. */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "check.h"
+#include "fail.h"
+#include "options.h"
+#include "scene_report.h"
+#include "signals.h"
+#include "version.h"
+
+/* `democles run`: collective. */
+static int run(struct comm *comm, struct options *options, struct scene *scene)
+{
+    char *dir = options->run.dir ? fail_strdup(options->run.dir) : fail_format("out/%s", scene->name);
+    options->run.dir = dir;
+    signals_install();
+    struct log *log = log_create(comm, options->run.quiet);
+    struct sim *sim = sim_create(scene, comm, log, &options->run);
+    int code = sim_run(sim);
+    sim_free(sim);
+    log_free(log);
+    free(dir);
+    return code;
+}
+
+/* `democles devices`, on one rank. */
+static int list_devices(int n_rank)
+{
+    char *text = NULL;
+    size_t n = 0;
+    FILE *file = open_memstream(&text, &n);
+    int n_device = file ? device_list(n_rank, file) : 0;
+    if (!file || fclose(file)) fail_stop(EXIT_IO, "out of memory");
+    if (n_device > 0) fputs(text, stdout);
+    else fprintf(stderr, "democles: error: %s", text);
+    free(text);
+    return n_device > 0 ? EXIT_DONE : EXIT_DEVICE;
+}
+
+/* What only prints: rank 0 does it, all ranks get its exit code. */
+static int print(const struct comm *comm, const struct options *options)
+{
+    int code = EXIT_DONE;
+    if (comm->rank == 0) {
+        if (options->version) printf("democles %s (%s)\n", DEMOCLES_VERSION, DEMOCLES_GIT);
+        else if (options->help) options_help(options->command, stdout);
+        else if (options->command == OPTIONS_DEVICES) code = list_devices(options->n_rank > 0 ? options->n_rank : comm->n_node_rank);
+        else if (!scene_explain(options->operand)) code = EXIT_USAGE;
+    }
+    comm_bcast(comm, &code, sizeof code, 0);
+    return code;
+}
+
+int main(int argc, char **argv)
+{
+    struct comm *comm = comm_create(&argc, &argv);
+    struct options options = options_parse(argc, argv);
+    if (options.error) fail_stop_together(EXIT_USAGE, "%s", options.error);
+
+    int code;
+    if (options.help || options.version || (options.command != OPTIONS_RUN && options.command != OPTIONS_CHECK)) {
+        code = print(comm, &options);
+    } else {
+        struct scene *scene = scene_report_read(comm, options.operand, options.set, options.n_set);
+        code = options.command == OPTIONS_RUN ? run(comm, &options, scene) : check_scene(comm, scene, options.resolved);
+        scene_free(scene);
+    }
+
+    int32_t is_lost = fflush(stdout) || ferror(stdout);
+    comm_or_i32(comm, &is_lost, 1);
+    if (is_lost) fail_stop_together(EXIT_IO, "cannot write to the standard output");
+    options_free(&options);
+    comm_free(comm);
+    return code;
+}

@@ -1,0 +1,129 @@
+#include "output.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "energy.h"
+#include "fail.h"
+#include "frame.h"
+#include "particle.h"
+#include "measures.h"
+#include "output_dir.h"
+#include "record.h"
+#include "signals.h"
+
+struct outputs {
+    struct measures *measures;
+    int64_t frame_every; /* steps; 0: first and last only */
+    int64_t n_frame;
+    int64_t frame_step; /* of the last frame; -1: none */
+    double looked_at;   /* clock of the last look for `stop` */
+    bool stop_seen;
+};
+
+static int64_t steps_of(const struct sim *s, double every)
+{
+    if (every <= 0) return 0;
+    int64_t n = llround(every / s->dt);
+    return n < 1 ? 1 : n;
+}
+
+struct outputs *output_create(struct sim *s)
+{
+    struct outputs *out = fail_alloc(sizeof *out);
+    const char **name = fail_alloc((size_t)s->scene->n_measure * sizeof *name);
+    for (int i = 0; i < s->scene->n_measure; i++) name[i] = s->scene->measure[i].name;
+    struct output_request request = {s->options->dir, s->options->force, s->scene->path, s->scene->resolved, name, s->scene->n_measure};
+    output_dir_create(s->comm, &request);
+    log_attach(s->log, s->options->dir, false);
+    out->measures = measures_create(s);
+    double every = s->scene->output.every;
+    if (s->scene->output.checkpoint_every > 0) every = every > 0 ? fmin(every, s->scene->output.checkpoint_every) : s->scene->output.checkpoint_every;
+    out->frame_every = steps_of(s, every);
+    out->frame_step = -1;
+    free(name);
+    return out;
+}
+
+void output_free(struct outputs *out)
+{
+    if (!out) return;
+    measures_free(out->measures);
+    free(out);
+}
+
+static bool frame_due(const struct sim *s, int64_t step)
+{
+    return step == 0 || (s->output->frame_every > 0 && step % s->output->frame_every == 0);
+}
+
+bool output_due(const struct sim *s, int64_t step)
+{
+    if (frame_due(s, step)) return true;
+    for (int i = 0; i < s->scene->n_measure; i++)
+        if (step % measures_every(s, i) == 0) return true;
+    return false;
+}
+
+void output_write(struct sim *s, bool last)
+{
+    struct outputs *out = s->output;
+    timer_begin(&s->timers, TIMER_OUTPUT);
+    measures_write(s, out->measures);
+    if ((last || frame_due(s, s->step)) && out->frame_step != s->step) {
+        measures_flush(out->measures);
+        frame_write(s, out->n_frame++);
+        out->frame_step = s->step;
+    }
+    timer_end(&s->timers, TIMER_OUTPUT);
+}
+
+/* The clock is read at every step, the folder is looked at twice a second. */
+bool output_stop_wanted(struct sim *s)
+{
+    struct outputs *out = s->output;
+    double now = timer_now();
+    if (signals_seen() || now - s->started > s->options->max_time) out->stop_seen = true;
+    if (s->comm->rank == 0 && now - out->looked_at > 0.5) {
+        out->looked_at = now;
+        if (output_dir_stop_asked(s->options->dir)) out->stop_seen = true;
+    }
+    return out->stop_seen;
+}
+
+void output_element_left(struct sim *s, const double x[3])
+{
+    measures_element_left(s, s->output->measures, x);
+}
+
+_Noreturn void output_stop_numerics(struct sim *s, const char *what, ...)
+{
+    char text[1024];
+    va_list args;
+    va_start(args, what);
+    vsnprintf(text, sizeof text, what, args);
+    va_end(args);
+    measures_flush(s->output->measures);
+    record_write(s, EXIT_NUMERICS, false);
+    fail_stop_together(EXIT_NUMERICS, "step %lld, t = %.9g s: %s", (long long)s->step, (double)s->step * s->dt, text);
+}
+
+void output_check_limit(struct sim *s)
+{
+    struct limit_result limit = particle_limit(s);
+    s->limit_at = s->step;
+    s->dt_limit = s->dt_limit > 0 ? fmin(s->dt_limit, limit.dt) : limit.dt;
+    if (s->dt <= limit.dt || s->scene->time.allow_unstable) return;
+    output_stop_numerics(s,
+        "the time step %.4g s is over its limit %.4g s, set by the contacts of element %lld; take a smaller time.step "
+        "(or softer contacts), or set time.allow_unstable",
+        s->dt, limit.dt, (long long)limit.gid);
+}
+
+void output_close(struct sim *s, int exit_code)
+{
+    measures_flush(s->output->measures);
+    record_write(s, exit_code, true);
+}

@@ -1,0 +1,26 @@
+/* The parts of the particle method, by file: particle_setup.c, particle_regroup.c, particle_step.c, particle_limit.c. */
+#ifndef DEMOCLES_PARTICLE_H
+#define DEMOCLES_PARTICLE_H
+
+#include "limit.h"
+#include "sim.h"
+
+void particle_setup(struct sim *s);
+void particle_free(struct sim *s);
+/* New owners, ghosts and lists, histories carried over. Collective. */
+void particle_regroup(struct sim *s);
+/* Ghosts, lists and everything that depends on their sizes, for owned elements that are in place. Collective. */
+void particle_build(struct sim *s);
+/* Forces of pairs and walls at the present step, into the result records. */
+void particle_forces(struct sim *s);
+/* Binds the step's kernels to buffers; sets sizes. After every build. */
+void particle_bind(struct sim *s);
+
+/* Largest safe time step by the bound of kernels/law_limit.h over the contacts of now, and the element that sets it (limit.h). Never over what is
+ * safe; where it is not below s->dt, no further than needed to say so. Collective. */
+struct limit_result particle_limit(struct sim *s);
+/* The limit [s] for the densest packing that the scene's elements can form, at the speeds that its geometry allows: what `step: auto` starts from;
+ * infinity if nothing can touch. Reads the scene, the walls and the first elements alone. */
+double particle_limit_dense(const struct sim *s);
+
+#endif

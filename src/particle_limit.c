@@ -1,0 +1,32 @@
+/* The time step's limit, as the driver asks for it. */
+#include "particle.h"
+
+#include <math.h>
+
+/* The dashpots' centring lets larger steps through the larger the step itself: from 0 up to where it agrees with itself, safe all the way. */
+static struct limit_result from_below(struct sim *s, double share)
+{
+    enum { ROUNDS = 8 };
+    struct limit_result r = limit_run(s, 0, share);
+    for (int k = 0; k < ROUNDS && isfinite(r.dt); k++) {
+        double before = r.dt;
+        r = limit_run(s, before, share);
+        if (r.dt < 1.005 * before) break;
+    }
+    return r;
+}
+
+struct limit_result particle_limit(struct sim *s)
+{
+    double share = limit_best_share(s->scene);
+    struct limit_result r = limit_run(s, s->dt, share);
+    if (r.dt >= s->dt) return r; /* as a rule: one run of the kernel */
+    r = from_below(s, share);
+    struct limit_result other = share < 1 ? from_below(s, 1) : r;
+    return other.dt > r.dt ? other : r;
+}
+
+double particle_limit_dense(const struct sim *s)
+{
+    return limit_dense(s->scene, s->first, limit_speed(s->scene, s->walls, s->first));
+}

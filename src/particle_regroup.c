@@ -1,0 +1,162 @@
+/* The rare path of the particle method: new owners -> migration -> ghosts -> lists. */
+#include "particle.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "energy.h"
+#include "fail.h"
+#include "output.h"
+
+/* The limit of the time step costs as much as several steps: looked at after list builds, but not after each. */
+enum { LIMIT_EVERY = 500 };
+
+/* Skin of slow elements, as a share of the mean radius; fast ones get `horizon` of their own motion on top. Wider skins mean more listed pairs,
+ * narrower
+ * ones more builds. The skin follows the interval between builds, by rules of steps alone, so that it is the same on any number of ranks. */
+enum { INTERVAL_SHORT = 150, INTERVAL_LONG = 1000 };
+#define SKIN_SMALLEST 0.005
+#define SKIN_LARGEST 0.2
+
+static void adapt_skin(struct sim *s, double radius)
+{
+    int64_t interval = s->step - s->built_at;
+    if (interval == 0) return;
+    if (interval < INTERVAL_SHORT) s->skin *= 1.25;
+    if (interval > INTERVAL_LONG) s->skin *= 0.8;
+    s->skin = fmin(fmax(s->skin, SKIN_SMALLEST * radius), SKIN_LARGEST * radius);
+}
+
+static double smallest_radius(const struct sim *s)
+{
+    double r = INFINITY;
+    for (int64_t i = 0; i < s->first->n; i++) r = fmin(r, s->first->radius[i]);
+    return r;
+}
+
+/* Positions and interaction counts to rank-wise cuts. */
+static void cut(struct sim *s)
+{
+    struct particles *p = s->particles;
+    size_t n = (size_t)p->n_owned;
+    struct particles_host *h = particles_download(s->dev, p, &s->features, s->scene, s->first);
+    int64_t *weight = fail_alloc(n * sizeof *weight);
+    cl_int *begin = fail_alloc((n + 1) * sizeof *begin);
+    buffer_read(s->dev, &s->pairs->now.row_begin, 0, (n + 1) * sizeof *begin, begin);
+    for (size_t i = 0; i < n; i++) weight[i] = 1 + begin[i + 1] - begin[i];
+    rcb_free(s->rcb);
+    s->rcb = rcb_create(s->comm, h->x, weight, h->n);
+    owners_set_tree(s->dev, s->owners, s->rcb);
+    s->cut_at = s->step;
+    s->n_repartition++;
+    free(weight);
+    free(begin);
+    particles_host_free(h);
+}
+
+static bool cut_is_due(const struct sim *s)
+{
+    const struct scene_partition *p = &s->scene->partition;
+    return s->comm->n_rank > 1 && p->every > 0 && s->step - s->cut_at >= p->every && s->imbalance_now > p->threshold;
+}
+
+static void count_removed(struct sim *s)
+{
+    int64_t n[2] = {s->owners->n_removed, s->owners->n_moved};
+    for (int64_t i = 0; i < s->owners->n_removed; i++) output_element_left(s, s->owners->removed[i].x);
+    comm_sum_i64(s->comm, n, 2);
+    s->n_removed += n[0];
+    s->n_moved += n[1];
+    s->particles->n_global -= n[0];
+    if (s->features.energy) energy_moved(s, n[0]);
+}
+
+/* Where the scene has given the domain's extent and does not say that elements may leave it, one that does ends the run. */
+static void check_inside(struct sim *s, const struct cells_bounds *now)
+{
+    const struct domain *d = &s->scene->domain;
+    int32_t is_outside = 0;
+    for (int a = 0; a < 3; a++) is_outside |= !d->periodic[a] && s->particles->n_owned > 0 && (now->low[a] < d->min[a] || now->high[a] > d->max[a]);
+    if (!d->has_box || d->remove_outside) return;
+    comm_or_i32(s->comm, &is_outside, 1);
+    if (!is_outside) return;
+    struct particles_host *h = particles_download(s->dev, s->particles, &s->features, s->scene, s->first);
+    int64_t gid = INT64_MAX, own = -1;
+    for (int64_t i = 0; i < h->n; i++)
+        for (int a = 0; a < 3; a++) {
+            double x = h->x[3 * i + a];
+            if (d->periodic[a] || (x >= d->min[a] && x <= d->max[a]) || h->gid[i] >= gid) continue;
+            gid = h->gid[i];
+            own = i;
+        }
+    int64_t first = gid;
+    comm_min_i64(s->comm, &first, 1);
+    double x[3];
+    for (int a = 0; a < 3; a++) x[a] = gid == first ? h->x[3 * own + a] : -HUGE_VAL;
+    comm_max_f64(s->comm, x, 3);
+    particles_host_free(h);
+    output_stop_numerics(s,
+        "element %lld has left the domain, at (%.6g, %.6g, %.6g) m; "
+        "a larger domain.box, or domain.remove_outside: true, lets the run go on",
+        (long long)first, x[0], x[1], x[2]);
+}
+
+void particle_build(struct sim *s)
+{
+    struct device *dev = s->dev;
+    struct particles *p = s->particles;
+    struct launch *room = s->select_room;
+    size_t preal = particles_preal(&s->features);
+    buffer_reserve(dev, &p->reference, 4 * preal * (size_t)p->n_owned);
+    particles_reserve(dev, p, &s->features, p->n_owned, p->n_owned);
+    launch_set_int(room, "n", (int)p->n_owned);
+    launch_set_real(room, "skin", s->skin);
+    launch_set_real(room, "horizon", s->horizon);
+    launch_set_real(room, "bond_range", s->features.bond_range);
+    launch_bind_buffer(room, "position", &p->field[FIELD_STATE].now);
+    launch_bind_buffer(room, "motion", &p->field[FIELD_STATE].now);
+    launch_bind_buffer(room, "reference", &p->reference);
+    launch_bind_buffer(room, "reach", &p->reach);
+    launch_run(room, dev->compute, p->n_owned, 0, NULL, NULL);
+    s->bounds = cells_bounds(dev, s->cells, p, p->n_owned);
+    for (int a = 0; a < 3; a++) {
+        s->box[a] = s->bounds.low[a];
+        s->box[3 + a] = s->bounds.high[a];
+    }
+    comm_min_f64(s->comm, s->box, 3);
+    comm_max_f64(s->comm, s->box + 3, 3);
+    ghosts_plan(dev, s->ghosts, s->scan, p, &s->bounds);
+    struct cells_bounds all = p->n_ghost > 0 ? cells_bounds(dev, s->cells, p, p->n_owned + p->n_ghost) : s->bounds;
+    cells_sort(dev, s->cells, s->scan, p, p->n_owned + p->n_ghost, &all);
+    pairs_build(dev, s->pairs, s->cells, s->scan, p);
+    if (s->wall_contacts) wall_contacts_build(dev, s->wall_contacts, s->scan, p, s->step, (int)ceil(s->horizon / s->dt), s->box, s->box + 3);
+    watch_reset(dev, &s->watch, &p->flags);
+    s->built_at = s->step;
+    int64_t work = s->pairs->now.n_interior + s->pairs->now.n_boundary + p->n_owned;
+    s->imbalance_now = partition_imbalance(s->comm, work);
+    s->imbalance_sum += s->imbalance_now;
+    s->imbalance_max = fmax(s->imbalance_max, s->imbalance_now);
+    s->n_imbalance++;
+}
+
+void particle_regroup(struct sim *s)
+{
+    ghosts_settle(s->dev, s->ghosts);
+    struct cells_bounds now = cells_bounds(s->dev, s->cells, s->particles, s->particles->n_owned);
+    int32_t lost = now.has_nan;
+    comm_or_i32(s->comm, &lost, 1);
+    if (lost) output_stop_numerics(s, "positions or velocities are not numbers any more");
+    check_inside(s, &now);
+    if (s->features.energy) energy_collect(s);
+    adapt_skin(s, smallest_radius(s));
+    if (s->wall_contacts) wall_contacts_set_step(s->dev, s->wall_contacts, s->step);
+    if (cut_is_due(s)) cut(s);
+    owners_move(s->dev, s->owners, s->cells, s->scan, s->particles, s->pairs, s->wall_contacts, &now);
+    count_removed(s);
+    particle_build(s);
+    pairs_carry(s->dev, s->pairs, s->particles, &s->owners->old_index);
+    if (s->wall_contacts) wall_contacts_carry(s->dev, s->wall_contacts, &s->owners->old_index);
+    particle_bind(s);
+    s->n_rebuild++;
+    if (s->step - s->limit_at >= LIMIT_EVERY) output_check_limit(s);
+}

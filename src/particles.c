@@ -1,0 +1,234 @@
+#include "particles.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fail.h"
+
+static size_t state_bytes(const struct features *f)
+{
+    return 4 * particles_preal(f) + (f->spin ? 8 : 4) * particles_real(f);
+}
+
+struct particles *particles_create(struct device *dev, const struct features *features, const struct program *lists)
+{
+    static const char *const name[FIELD_N][2] = {{"state", "state, spare"}, {"gid", "gid, spare"}, {"orientation", "orientation, spare"}};
+    struct particles *p = fail_alloc(sizeof *p);
+    p->field[FIELD_STATE].bytes = state_bytes(features);
+    p->field[FIELD_GID].bytes = sizeof(int64_t);
+    p->field[FIELD_ORIENTATION].bytes = features->orientation ? 4 * particles_real(features) : 0;
+    for (int i = 0; i < FIELD_N; i++) {
+        p->field[i].name = name[i][0];
+        buffer_init(&p->field[i].now, name[i][0]);
+        buffer_init(&p->field[i].spare, name[i][1]);
+        buffer_reserve(dev, &p->field[i].now, 0);
+        buffer_reserve(dev, &p->field[i].spare, 0);
+    }
+    buffer_init(&p->reference, "reference");
+    buffer_init(&p->reach, "reach");
+    buffer_init(&p->force, "force");
+    buffer_init(&p->torque, "torque");
+    buffer_init(&p->flags, "flags");
+    buffer_reserve(dev, &p->flags, 2 * sizeof(cl_int));
+    p->gather = launch_create(lists, "record_gather");
+    p->copy = launch_create(lists, "record_copy");
+    return p;
+}
+
+void particles_free(struct device *dev, struct particles *p)
+{
+    if (!p) return;
+    for (int i = 0; i < FIELD_N; i++) {
+        buffer_free(dev, &p->field[i].now);
+        buffer_free(dev, &p->field[i].spare);
+    }
+    struct buffer *other[] = {&p->reference, &p->reach, &p->force, &p->torque, &p->flags};
+    for (int i = 0; i < 5; i++) buffer_free(dev, other[i]);
+    launch_free(p->gather);
+    launch_free(p->copy);
+    free(p);
+}
+
+/* Grows a buffer and keeps its first bytes: the rare case of ghosts that do not fit behind the owned elements. */
+static void reserve_keep(struct device *dev, struct particles *p, struct buffer *buffer, size_t keep, size_t bytes)
+{
+    if (bytes <= buffer->capacity) {
+        buffer_reserve(dev, buffer, bytes);
+        return;
+    }
+    struct buffer larger;
+    buffer_init(&larger, buffer->name);
+    buffer_reserve(dev, &larger, bytes + bytes / 4);
+    buffer_reserve(dev, &larger, bytes);
+    if (keep > 0) {
+        int words = (int)(keep / 4);
+        launch_set_int(p->copy, "n", words);
+        launch_bind_buffer(p->copy, "from", buffer);
+        launch_bind_buffer(p->copy, "to", &larger);
+        launch_run(p->copy, dev->compute, words, 0, NULL, NULL);
+    }
+    device_finish(dev);
+    buffer_free(dev, buffer);
+    *buffer = larger;
+}
+
+void particles_reserve(struct device *dev, struct particles *p, const struct features *features, int64_t n, int64_t keep)
+{
+    for (int i = 0; i < FIELD_N; i++) reserve_keep(dev, p, &p->field[i].now, p->field[i].bytes * (size_t)keep, p->field[i].bytes * (size_t)n);
+    reserve_keep(dev, p, &p->reach, particles_preal(features) * (size_t)keep, particles_preal(features) * (size_t)n);
+    buffer_reserve(dev, &p->force, 4 * particles_real(features) * (size_t)n);
+    buffer_reserve(dev, &p->torque, features->spin ? 4 * particles_real(features) * (size_t)n : 0);
+}
+
+void particles_reserve_spare(struct device *dev, struct particles *p, int64_t n)
+{
+    for (int i = 0; i < FIELD_N; i++) buffer_reserve(dev, &p->field[i].spare, p->field[i].bytes * (size_t)n);
+}
+
+void particles_permute(struct device *dev, struct particles *p, const struct buffer *index, int64_t n)
+{
+    for (int i = 0; i < FIELD_N; i++) {
+        if (p->field[i].bytes == 0) continue;
+        launch_set_int(p->gather, "n", (int)n);
+        launch_set_int(p->gather, "words", (int)(p->field[i].bytes / 4));
+        launch_bind_buffer(p->gather, "index", index);
+        launch_bind_buffer(p->gather, "from", &p->field[i].now);
+        launch_bind_buffer(p->gather, "to", &p->field[i].spare);
+        launch_run(p->gather, dev->compute, n, 0, NULL, NULL);
+    }
+}
+
+void particles_swap(struct particles *p)
+{
+    for (int i = 0; i < FIELD_N; i++) {
+        struct buffer b = p->field[i].now;
+        p->field[i].now = p->field[i].spare;
+        p->field[i].spare = b;
+    }
+}
+
+static double mass_of(const struct scene *scene, int material, double radius)
+{
+    return scene->material[material].density * (4.0 / 3.0) * M_PI * radius * radius * radius;
+}
+
+/* One element's record, as kernels/element.h reads it. */
+static void write_record(char *record, const struct features *f, const struct elements_host *e, int64_t i, double mass)
+{
+    double head[4] = {e->x[3 * i], e->x[3 * i + 1], e->x[3 * i + 2], e->radius[i]};
+    double tail[8] = {e->v[3 * i], e->v[3 * i + 1], e->v[3 * i + 2], 1 / mass, e->w[3 * i], e->w[3 * i + 1], e->w[3 * i + 2], e->material[i]};
+    for (int k = 0; k < 4; k++) {
+        if (f->position_is_float) ((float *)record)[k] = (float)head[k];
+        else ((double *)record)[k] = head[k];
+    }
+    record += 4 * particles_preal(f);
+    for (int k = 0; k < (f->spin ? 8 : 4); k++) {
+        if (f->real_is_float) ((float *)record)[k] = (float)tail[k];
+        else ((double *)record)[k] = tail[k];
+    }
+}
+
+void particles_upload(struct device *dev, struct particles *p, const struct features *features, const struct elements_host *elements,
+    const struct scene *scene, const unsigned char *take)
+{
+    int64_t n = 0;
+    size_t bytes = state_bytes(features), real = particles_real(features);
+    for (int64_t i = 0; i < elements->n; i++) n += take[i];
+    char *state = fail_alloc((size_t)n * bytes);
+    int64_t *gid = fail_alloc((size_t)n * sizeof *gid);
+    double *q = fail_alloc((size_t)n * 4 * sizeof *q);
+    int64_t k = 0;
+    for (int64_t i = 0; i < elements->n; i++) {
+        if (!take[i]) continue;
+        write_record(state + (size_t)k * bytes, features, elements, i, mass_of(scene, elements->material[i], elements->radius[i]));
+        gid[k] = i;
+        q[4 * k++] = 1;
+    }
+    p->n_owned = n;
+    p->n_ghost = 0;
+    p->n_global = elements->n;
+    particles_reserve(dev, p, features, n, 0);
+    buffer_write(dev, &p->field[FIELD_STATE].now, 0, (size_t)n * bytes, state);
+    buffer_write(dev, &p->field[FIELD_GID].now, 0, (size_t)n * sizeof *gid, gid);
+    if (features->orientation) particles_write(dev, &p->field[FIELD_ORIENTATION].now, real == sizeof(float), 0, 4 * (size_t)n, q);
+    free(state);
+    free(gid);
+    free(q);
+}
+
+double *particles_read(struct device *dev, const struct buffer *buffer, bool is_float, size_t first, size_t n)
+{
+    double *value = fail_alloc(n * sizeof *value);
+    if (is_float) {
+        float *raw = fail_alloc(n * sizeof *raw);
+        buffer_read(dev, buffer, first * sizeof *raw, n * sizeof *raw, raw);
+        for (size_t i = 0; i < n; i++) value[i] = (double)raw[i];
+        free(raw);
+    } else {
+        buffer_read(dev, buffer, first * sizeof *value, n * sizeof *value, value);
+    }
+    return value;
+}
+
+void particles_write(struct device *dev, struct buffer *buffer, bool is_float, size_t first, size_t n, const double *value)
+{
+    if (is_float) {
+        float *raw = fail_alloc(n * sizeof *raw);
+        for (size_t i = 0; i < n; i++) raw[i] = (float)value[i];
+        buffer_write(dev, buffer, first * sizeof *raw, n * sizeof *raw, raw);
+        free(raw);
+    } else {
+        buffer_write(dev, buffer, first * sizeof *value, n * sizeof *value, value);
+    }
+}
+
+static double number(const char *record, bool is_float, int k)
+{
+    return is_float ? (double)((const float *)record)[k] : ((const double *)record)[k];
+}
+
+struct particles_host *particles_download(
+    struct device *dev, const struct particles *p, const struct features *f, const struct scene *scene, const struct elements_host *first)
+{
+    size_t n = (size_t)p->n_owned, bytes = state_bytes(f);
+    struct particles_host *h = fail_alloc(sizeof *h);
+    char *state = fail_alloc(n * bytes);
+    h->n = p->n_owned;
+    h->gid = fail_alloc(n * sizeof *h->gid);
+    h->x = fail_alloc(3 * n * sizeof *h->x);
+    h->v = fail_alloc(3 * n * sizeof *h->v);
+    h->w = fail_alloc(3 * n * sizeof *h->w);
+    h->radius = fail_alloc(n * sizeof *h->radius);
+    h->mass = fail_alloc(n * sizeof *h->mass);
+    h->material = fail_alloc(n * sizeof *h->material);
+    buffer_read(dev, &p->field[FIELD_STATE].now, 0, n * bytes, state);
+    buffer_read(dev, &p->field[FIELD_GID].now, 0, n * sizeof *h->gid, h->gid);
+    for (size_t i = 0; i < n; i++) {
+        const char *head = state + i * bytes, *tail = head + 4 * particles_preal(f);
+        for (int a = 0; a < 3; a++) {
+            h->x[3 * i + (size_t)a] = number(head, f->position_is_float, a);
+            h->v[3 * i + (size_t)a] = number(tail, f->real_is_float, a);
+            if (f->spin) h->w[3 * i + (size_t)a] = number(tail, f->real_is_float, 4 + a);
+        }
+        h->radius[i] = number(head, f->position_is_float, 3);
+        h->material[i] = first->material[h->gid[i]];
+        h->mass[i] = mass_of(scene, h->material[i], first->radius[h->gid[i]]);
+    }
+    if (f->orientation) {
+        h->q = particles_read(dev, &p->field[FIELD_ORIENTATION].now, f->real_is_float, 0, 4 * n);
+    } else {
+        h->q = fail_alloc(4 * n * sizeof *h->q);
+        for (size_t i = 0; i < n; i++) h->q[4 * i] = 1;
+    }
+    free(state);
+    return h;
+}
+
+void particles_host_free(struct particles_host *h)
+{
+    if (!h) return;
+    void *part[] = {h->gid, h->x, h->v, h->w, h->q, h->radius, h->mass, h->material};
+    for (size_t i = 0; i < sizeof part / sizeof *part; i++) free(part[i]);
+    free(h);
+}

@@ -1,0 +1,10 @@
+/* run.json: what a run was, did and cost, at its end, also of a failed one. */
+#ifndef DEMOCLES_RECORD_H
+#define DEMOCLES_RECORD_H
+
+#include "sim.h"
+
+/* Collective. `observed`: the state on the device is one of full steps, so that energies and the digest can be taken. */
+void record_write(struct sim *s, int exit_code, bool observed);
+
+#endif

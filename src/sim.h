@@ -1,0 +1,83 @@
+/* A run: the one owner of everything, and the main loop.
+ *
+ * The loop knows steps, output and stops; what a step is, the method knows (step.h). */
+#ifndef DEMOCLES_SIM_H
+#define DEMOCLES_SIM_H
+
+#include "../partition/partition.h"
+#include "energy.h"
+#include "ghosts.h"
+#include "log.h"
+#include "owners.h"
+#include "step.h"
+#include "timer.h"
+#include "watch.h"
+
+/* From the command line. */
+struct sim_options {
+    const char *dir;            /* results */
+    bool force, quiet, profile; /* profile: device time of every kernel into run.json, at a small price */
+    const char *device;         /* NULL: best */
+    enum precision precision;   /* PRECISION_DEFAULT: the scene's */
+    int64_t n_step;             /* last step, -1: from the scene's end */
+    double max_time;            /* [s] of wall time; infinity: none */
+};
+
+struct sim {
+    const struct sim_options *options;
+    struct scene *scene;
+    struct comm *comm;
+    struct device *dev;
+    struct log *log;
+    struct features features;
+    struct walls *walls;
+    struct elements_host *first; /* as generated, all elements on every rank */
+    double domain[6], period[3]; /* box low, high [m]; 0 where not periodic */
+    const struct step_ops *ops;
+
+    /* particle method */
+    struct program *program_lists, *program_pair, *program_wall, *program_body;
+    struct particles *particles;
+    struct cells *cells;
+    struct scan *scan;
+    struct pairs *pairs;
+    struct wall_contacts *wall_contacts; /* NULL without walls */
+    struct owners *owners;
+    struct ghosts *ghosts;
+    struct rcb *rcb;
+    struct launch *select_room, *pair_force, *wall_force, *gather, *kick_drift;
+    struct buffer table_pair, table_wall;
+    struct limit *limit;
+    double skin, horizon;       /* room to move: skin + horizon |v| [m], [s] */
+    int64_t built_at;           /* step of the last list build */
+    struct cells_bounds bounds; /* of owned elements at the last build */
+    double box[6];              /* of all elements of all ranks at the last build */
+
+    int64_t step, n_step;     /* now; last */
+    int64_t cut_at, limit_at; /* of the last partition; of the last look at the limit */
+    bool observed;            /* the state on the device is that of a full step */
+    double dt, dt_limit;      /* [s]; rigorous limit at the last build */
+    struct watch watch;
+    struct timers timers;
+    struct outputs *output;
+
+    /* account of the run */
+    int64_t n_rebuild, n_repartition, n_removed, n_moved;
+    double imbalance_sum, imbalance_max, imbalance_now;
+    int64_t n_imbalance;
+    struct energy *energy;
+    struct energy_sums energy_start;
+    double element_steps;         /* elements times steps so far */
+    struct device_counters plain; /* what the plain steps added: those without regroup, observation or the step after one */
+    int64_t n_plain;
+    int64_t halo_bytes; /* sent by all ranks */
+    double started;     /* timer_now at the start */
+};
+
+/* Reads nothing: the scene is there. Opens the device, builds kernels, makes elements, lists and output. Collective; errors stop all ranks. */
+struct sim *sim_create(struct scene *scene, struct comm *comm, struct log *log, const struct sim_options *options);
+/* Runs to the end or to a stop; returns the exit code. Collective. */
+int sim_run(struct sim *s);
+void sim_free(struct sim *s);
+
+#endif

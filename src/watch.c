@@ -1,0 +1,37 @@
+#include "watch.h"
+
+static void wait_read(struct watch *w)
+{
+    if (!w->read) return;
+    check_cl(clWaitForEvents(1, &w->read));
+    check_cl(clReleaseEvent(w->read));
+    w->read = NULL;
+}
+
+void watch_read(struct device *dev, struct watch *w, const struct buffer *flags)
+{
+    wait_read(w);
+    buffer_read_begin(dev, dev->compute, flags, 0, sizeof w->flag, w->flag, 0, NULL, &w->read);
+    check_cl(clFlush(dev->compute));
+}
+
+void watch_vote(struct watch *w, const struct comm *comm, int32_t own)
+{
+    if (w->read) {
+        wait_read(w);
+        own |= (w->flag[0] ? WATCH_STALE : 0) | (w->flag[1] ? WATCH_LOST : 0);
+    }
+    comm_vote_begin(comm, &w->vote, own);
+}
+
+int32_t watch_agreed(struct watch *w)
+{
+    return comm_vote_end(&w->vote);
+}
+
+void watch_reset(struct device *dev, struct watch *w, struct buffer *flags)
+{
+    wait_read(w);
+    comm_vote_end(&w->vote);
+    buffer_zero(dev, flags);
+}

@@ -1,0 +1,29 @@
+/* What the device and the users have to say between steps: lists used up, elements lost, a request to stop; agreed by all ranks without stopping the
+ * pipeline.
+ *
+ * The flags of the drift that led to step n are read back and voted on beside the forces of step n, and known before those of step n + 1. Lists are
+ * therefore declared stale before they are (margin of integrate.h), at the same step on any number of ranks. */
+#ifndef DEMOCLES_WATCH_H
+#define DEMOCLES_WATCH_H
+
+#include "buffer.h"
+
+enum { WATCH_STALE = 1, WATCH_LOST = 2, WATCH_STOP = 4 };
+enum { WATCH_MARGIN = 2 }; /* steps' way: one until the host acts, and as much again for speeds that change */
+
+struct watch {
+    cl_event read;   /* of the flags after the last drift */
+    int32_t flag[2]; /* where they go: stale, lost */
+    struct comm_vote vote;
+};
+
+/* After a drift: begins to read the flags. */
+void watch_read(struct device *dev, struct watch *w, const struct buffer *flags);
+/* Beside the next step: joins what was read with `own` (WATCH_STOP) and begins the vote. Collective. */
+void watch_vote(struct watch *w, const struct comm *comm, int32_t own);
+/* What was agreed, WATCH_ bits; 0 if no vote is open. */
+int32_t watch_agreed(struct watch *w);
+/* Forgets flags and votes under way; all ranks at the same step. */
+void watch_reset(struct device *dev, struct watch *w, struct buffer *flags);
+
+#endif

@@ -1,0 +1,72 @@
+#include "record_reader.h"
+
+#include "fail.h"
+
+enum { POSITION, DOWN_BEGIN, DOWN, UP_BEGIN, UP_COUNT, WALL_BEGIN, FORCE, TORQUE, REFERENCE, FLAGS, ORIENTATION, NOTHING, N_BUFFER };
+
+void reader_open(struct reader *r, struct device *dev, const struct features *features)
+{
+    static const char *const sources[] = {"gather.cl", NULL};
+    static const char *const value[] = {"gravity_x", "gravity_y", "gravity_z", "dt", "half_dt", "margin_dt", "radius", "inverse_m"};
+    r->dev = dev;
+    r->program = fixture_program(dev, features, FEATURES_BODY, sources);
+    r->gather = launch_create(r->program, "gather");
+    for (int k = 0; k < 8; k++) launch_set_real_if(r->gather, value[k], k < 6 ? 0 : 1);
+    launch_set_int(r->gather, "observe", 1);
+}
+
+void reader_close(struct reader *r)
+{
+    launch_free(r->gather);
+    program_free(r->program);
+}
+
+/* Elements 2 p and 2 p + 1 are the two ends of pair p and of nothing else; the others have one wall contact each. */
+static void set_lists(struct reader *r, int n_pair, int n_wall)
+{
+    int n = 2 * n_pair + n_wall;
+    size_t bytes = ((size_t)n + 1) * sizeof(int);
+    int *list[5];
+    for (int k = 0; k < 5; k++) list[k] = fail_alloc(bytes);
+    int *down_begin = list[0], *down = list[1], *up_begin = list[2], *up_count = list[3], *wall_begin = list[4];
+    for (int e = 0; e <= n; e++) {
+        down_begin[e] = e / 2 < n_pair ? e / 2 : n_pair;
+        down[e] = e;
+        up_begin[e] = e / 2;
+        up_count[e] = e < 2 * n_pair && e % 2 == 0;
+        wall_begin[e] = e > 2 * n_pair ? e - 2 * n_pair : 0;
+    }
+    static const char *const name[] = {"down_begin", "down", "up_begin", "up_count", "wall_begin"};
+    for (int k = 0; k < 5; k++) {
+        fixture_bind(r->dev, r->gather, &r->buffer[DOWN_BEGIN + k], name[k], bytes, list[k]);
+        free(list[k]);
+    }
+}
+
+void reader_read(struct reader *r, struct buffer *pair_result, int n_pair, struct buffer *wall_result, int n_wall, struct reading *out)
+{
+    size_t n = (size_t)(2 * n_pair + n_wall);
+    struct record *element = fail_alloc(n * sizeof *element);
+    real *vector = fail_alloc(4 * n * sizeof *vector);
+    for (size_t e = 0; e < n; e++) element[e].radius = 1;
+    set_lists(r, n_pair, n_wall);
+    fixture_bind(r->dev, r->gather, &r->buffer[POSITION], "position", n * sizeof *element, element);
+    launch_bind_buffer(r->gather, "motion", &r->buffer[POSITION]);
+    fixture_bind(r->dev, r->gather, &r->buffer[FORCE], "force", 4 * n * sizeof(real), NULL);
+    fixture_bind(r->dev, r->gather, &r->buffer[TORQUE], "torque", 4 * n * sizeof(real), vector);
+    fixture_bind(r->dev, r->gather, &r->buffer[REFERENCE], "reference", 64, NULL);
+    fixture_bind(r->dev, r->gather, &r->buffer[FLAGS], "flags", 64, NULL);
+    fixture_bind(r->dev, r->gather, &r->buffer[ORIENTATION], "orientation", 64, NULL);
+    fixture_buffer(r->dev, &r->buffer[NOTHING], "nothing", 64, NULL);
+    launch_bind_buffer(r->gather, "result", pair_result ? pair_result : &r->buffer[NOTHING]);
+    launch_bind_buffer_if(r->gather, "wall_result", wall_result ? wall_result : &r->buffer[NOTHING]);
+    launch_set_int(r->gather, "n_owned", (int)n);
+    launch_run(r->gather, r->dev->compute, (int64_t)n, 0, NULL, NULL);
+    for (int which = 0; which < 2; which++) {
+        buffer_read(r->dev, &r->buffer[which ? TORQUE : FORCE], 0, 4 * n * sizeof *vector, vector);
+        for (size_t e = 0; e < n; e++) memcpy(which ? out[e].torque : out[e].force, vector + 4 * e, sizeof out[e].force);
+    }
+    for (int b = 0; b < N_BUFFER; b++) buffer_free(r->dev, &r->buffer[b]);
+    free(element);
+    free(vector);
+}

@@ -1,0 +1,51 @@
+"""The program as a user calls it: what the tests of the command line share."""
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+DEMOCLES, MPIRUN, MPIRUN_ARGS = None, None, []
+
+
+class Result:
+    def __init__(self, run):
+        self.code, self.out, self.err = run.returncode, run.stdout, []
+        notice = False  # of mpirun: between lines of dashes
+        for line in run.stderr.splitlines():
+            if line == 74 * "-":
+                notice = not notice
+            elif line and not notice:
+                self.err.append(line)
+
+
+def launch(parts, cwd=None, env=None, stdout=subprocess.PIPE):
+    """parts: [(ranks, arguments)]; one part with one rank runs without mpirun. No result within a minute is a hang."""
+    command = [] if parts[0][0] == 1 and len(parts) == 1 else [MPIRUN, *MPIRUN_ARGS]
+    for k, (ranks, args) in enumerate(parts):
+        command += [":"] * (k > 0) + (["-n", str(ranks)] if command else []) + [DEMOCLES, *args]
+    return Result(subprocess.run(command, cwd=cwd, env={**os.environ, **(env or {})}, stdin=subprocess.DEVNULL, stdout=stdout,
+                                 stderr=subprocess.PIPE, text=True, timeout=60))
+
+
+class Case(unittest.TestCase):
+    maxDiff = None
+
+    def setUp(self):
+        self.dir = tempfile.mkdtemp(prefix="democles_cli_")
+        self.addCleanup(shutil.rmtree, self.dir, True)
+
+    def put(self, name, text):
+        with open(os.path.join(self.dir, name), "w") as file:
+            file.write(text)
+
+    def call(self, *args, ranks=1, **more):
+        return launch([(ranks, args)], cwd=self.dir, **more)
+
+
+def main(first=1):
+    """Arguments from the first on: democles, mpirun, its arguments; before them: the class of tests, else all."""
+    global DEMOCLES, MPIRUN, MPIRUN_ARGS
+    DEMOCLES, MPIRUN, MPIRUN_ARGS = os.path.abspath(sys.argv[first]), sys.argv[first + 1], sys.argv[first + 2:]
+    unittest.main(argv=sys.argv[:first], module="__main__")

@@ -1,0 +1,44 @@
+#!/usr/bin/python3
+"""The same bits on any number of ranks: state, contacts with their histories, measures. Own argument: the scenes."""
+import parallel_runs
+
+# Everything for the scenes that stand for whole cases; the rest takes turns, to be short.
+FULL = {"double": (1, 2, 3, 4, 8), "single": (1, 2, 3, 4, 8), "mixed": (1, 3)}
+SOME = {"double": (1, 3, 8), "single": (1, 4), "mixed": (1, 2)}
+RANKS = {"funnel": FULL, "column": FULL, "hertz": FULL}
+
+
+def of_all(run):
+    """What must not depend on ranks."""
+    record = run.record()
+    same = {key: record[key] for key in ("digest", "steps", "dt", "dt_limit", "elements", "elements_left", "rebuilds", "energy", "momentum")}
+    return same, run.series(), run.contacts()
+
+
+class Digest(parallel_runs.Case):
+    def test_ranks(self):
+        for name in parallel_runs.OWN:
+            scene = self.scene(name)
+            for precision, ranks in RANKS.get(name, SOME).items():
+                alone, moved = None, 0
+                for n in ranks:
+                    with self.subTest(scene=name, precision=precision, ranks=n):
+                        run = self.good_run(scene, n, "--precision", precision)
+                        found = of_all(run)
+                        record = run.record()
+                        alone = alone or found
+                        self.assertEqual(found[0], alone[0])
+                        self.assertEqual(found[1], alone[1])
+                        self.assertEqual(found[2], alone[2])
+                        self.assertEqual((record["ranks"], record["precision"]), (n, precision))
+                        self.assertGreater(record["rebuilds"], 2)
+                        if name != "apart":  # there is something to get wrong
+                            self.assertGreater(record["energy"]["end"]["dashpot_normal"], 0)
+                            self.assertGreater(record["energy"]["end"]["sliding"], 0)
+                        moved += record["migrations"]
+                if name != "three":
+                    self.assertGreater(moved, 0, "nothing has changed hands: the test tests nothing")
+
+
+if __name__ == "__main__":
+    parallel_runs.main()

@@ -1,0 +1,141 @@
+#!/usr/bin/python3
+"""Runs that cannot be: each has one message, its exit code, leaves nothing half-done, and no rank waits for ever. Own argument: results_tool."""
+import os
+import resource
+import subprocess
+
+import parallel_runs
+import parallel_scenes
+import robust_jobs
+
+
+class Failures(robust_jobs.Case):
+    def fails(self, scene, ranks, code, says, *args, **more):
+        """Exit code and message of a failed run, once for all ranks."""
+        run = self.run_scene(scene, ranks, *args, **more)
+        errors = [line for line in run.err.splitlines() if line.startswith("democles: error: ")]
+        self.assertEqual((run.code, len(errors)), (code, 1), run.err)
+        self.assertRegex(errors[0], says)
+        self.assertEqual(self.leftovers(run.dir), [])
+        return run
+
+    def failed_record(self, run, code):
+        record = run.record()
+        self.assertEqual((record["exit"], record["digest"]), (code, None))
+        return record
+
+
+class Numerics(Failures):
+    def test_step_over_limit(self):
+        """Two spheres that touch may take 2/sqrt(2k/m) = 5.7e-4 s, a bed that has come to rest less: the first is refused at once, the other then."""
+        contact = {"normal": {**parallel_scenes.LINEAR, "damping_ratio": 0}}
+        pair = parallel_scenes.scene(1000, 6e-4, contact, [{"name": "pair", "file": "pair.csv"}])
+        with open(os.path.join(self.dir, "pair.csv"), "w") as file:
+            file.write("x,y,z,radius\n0,0,0,0.0025\n0.004999,0,0,0.0025\n")
+        fall = parallel_scenes.scene(2000, 5e-4, contact, [parallel_scenes.block("balls", (0, 0, 0), (0.02, 0.02, 0.03), 0.005)],
+                                     [parallel_scenes.box("room", (0, 0, 0), (0.02, 0.02, 0.1))])
+        for ranks in (1, 3):
+            for scene, when in ((pair, r"0, t = 0 s"), (fall, r"[1-9]\d*, t = \S+ s")):
+                run = self.fails(self.put(scene), ranks, 5, r"step " + when + r": the time step 0\.000[56] s is over its limit .* element \d+")
+                record = self.failed_record(run, 5)
+                self.assertGreater(record["dt"], record["dt_limit"])
+                self.whole(run.dir)
+
+    def test_blow_up(self):
+        """Some times the stable step: the run finds out by itself, and the frames until then stay."""
+        contact = {"normal": {**parallel_scenes.LINEAR, "damping_ratio": 0}}
+        room = [parallel_scenes.box("room", (0, 0, 0), (0.03, 0.03, 0.03))]
+        packed = parallel_scenes.scene(10**5, 1.5e-3, contact, [parallel_scenes.block("packed", (0, 0, 0), (0.03, 0.03, 0.03), 0.005,
+            velocity=(1, 1, 1))], room)
+        packed["time"]["allow_unstable"] = True
+        packed["output"] = {"every": 0.015}
+        packed["measure"] = []
+        for ranks in (1, 3):
+            for domain in ({}, {"remove_outside": True}):
+                packed["domain"] = domain
+                run = self.run_scene(self.put(packed), ranks, "--steps", "2000")
+                record = run.record()
+                if domain and run.code == 0:
+                    self.assertEqual((record["exit"], record["elements_left"]), (0, record["elements"]))
+                else:
+                    self.assertEqual(run.code, 5, run.err)
+                    self.assertRegex(run.err, r"(?m)^democles: error: step \d+, .*not numbers")
+                    self.failed_record(run, 5)
+                self.assertEqual(self.leftovers(run.dir), [])
+                self.assertGreater(self.whole(run.dir), 0)
+
+    def test_lost_element(self):
+        free = parallel_scenes.scene(10**4, 1e-4, {}, [parallel_scenes.block("free", (0, 0, 0), (0.02, 0.02, 0.02), 0.005, velocity=(1, 0, 0))],
+                                     domain={"box": {"min": [-0.1, -0.1, -1], "max": [0.1, 0.1, 1]}})
+        for ranks in (1, 3):
+            run = self.fails(self.put(free), ranks, 5, r"step \d+, t = .*: .*element \d+ .*domain")
+            self.failed_record(run, 5)
+            self.whole(run.dir)
+
+
+class Environment(Failures):
+    def test_no_device(self):
+        scene = self.put(robust_jobs.bed())
+        for ranks in (1, 3):
+            run = self.fails(scene, ranks, 4, "no OpenCL device was found", env={"OCL_ICD_VENDORS": self.dir})
+            self.assertFalse(os.path.exists(os.path.join(run.dir, "run.json")))
+            self.fails(scene, ranks, 4, "no such thing", "--device", "no such thing")
+
+    def test_kernel_that_does_not_build(self):
+        """Sources from a folder, one of them broken: options, log and place of the source are said."""
+        folder = os.path.join(self.dir, "kernels")
+        os.mkdir(folder)
+        source = os.path.join(os.path.dirname(parallel_runs.CASES), "kernels")
+        for name in os.listdir(source):
+            with open(os.path.join(source, name)) as file:
+                text = file.read()
+            with open(os.path.join(folder, name), "w") as file:
+                file.write(text + ("\nthis is no kernel\n" if name == "gather.cl" else ""))
+        for ranks in (1, 3):
+            run = self.run_scene(self.put(robust_jobs.bed()), ranks, env={"DEMOCLES_KERNELS": folder, "TMPDIR": self.dir})
+            self.assertEqual(run.code, 4, run.err)
+            self.assertRegex(run.err, r"(?m)^democles: error: .*does not build on .*options: .*source: ")
+            self.assertRegex(run.err, r"gather\.cl:\d+:\d+: unknown type name 'this'")
+
+    def test_file_size_limit(self):
+        """As a disk that fills up while the run is under way: what was written before stays."""
+        scene = self.put(robust_jobs.bed(frame_every=50))
+        for ranks in (1, 3):
+            job = self.job(scene, ranks, name=f"out{ranks}")
+            job.wait_frames(2)
+            limit = os.path.getsize(job.frames()[0]) // 2
+            for pid in job.pids().values():
+                resource.prlimit(pid, resource.RLIMIT_FSIZE, (limit, limit))
+            self.assertEqual(job.end(), 6, job.err())
+            self.assertEqual(len(job.errors()), 1, job.err())
+            self.assertRegex(job.errors()[0], r"(frame_\d+\.hdf|energy\.csv|log\.txt).*: File too large")
+            self.assertEqual(self.leftovers(job.dir), [])
+            self.assertGreaterEqual(self.whole(job.dir), 2)
+
+    def test_full_disk(self):
+        """Where a small file system may be mounted."""
+        disk, scene = os.path.join(self.dir, "disk"), self.put(robust_jobs.bed(frame_every=50))
+        os.mkdir(disk)
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=2m", "tmpfs", disk], capture_output=True).returncode:
+            self.skipTest("no right to mount")
+        try:
+            for ranks in (1, 3):
+                run = self.fails(scene, ranks, 6, "No space left on device", name=f"disk/{ranks}")
+                self.assertGreaterEqual(self.whole(run.dir), 1)
+                subprocess.run(["rm", "-rf", run.dir], check=True)
+        finally:
+            subprocess.run(["umount", "-l", disk], check=True)
+
+    def test_folder_that_cannot_be(self):
+        self.put(robust_jobs.bed())
+        with open(os.path.join(self.dir, "file"), "w"):
+            pass
+        for ranks in (1, 3):
+            run = subprocess.run(parallel_runs.command(ranks, "run", "scene.yaml", "-o", "file/out"), cwd=self.dir, capture_output=True, text=True,
+                                 timeout=parallel_runs.HANG)
+            self.assertEqual(run.returncode, 6, run.stderr)
+            self.assertEqual(run.stderr.count("democles: error: "), 1)
+
+
+if __name__ == "__main__":
+    parallel_runs.main(1)

@@ -1,0 +1,123 @@
+"""Runs that are interrupted, for the tests of robustness: started in the background, watched, signalled at one rank. Own argument: results_tool."""
+import glob
+import os
+import re
+import shutil
+import signal
+import subprocess
+import time
+
+import parallel_runs
+import parallel_scenes
+
+SOON = 60  # seconds within which a job has to end once somebody wants it to; the machine may be busy
+
+
+def bed(steps=10**7, dt=2e-5, frame_every=200, **more):
+    """Elements thrown into a box: runs for as long as nobody stops it."""
+    contact = {"normal": parallel_scenes.LINEAR, "tangential": parallel_scenes.FRICTION}
+    s = parallel_scenes.scene(steps, dt, contact, [parallel_scenes.block("bed", (0, 0, 0), (0.04, 0.03, 0.03), 0.005, velocity=(0.5, 0, -0.5))],
+                              [parallel_scenes.box("trough", (0, 0, 0), (0.04, 0.03, 0.1))], **more)
+    s["output"] = {"every": frame_every * dt, "fields": ["velocity", "radius", "coordination"]}
+    s["measure"] = [{"name": "energy", "every": 100 * dt, "energy": "all"}]
+    return s
+
+
+class Job:
+    """A run under way, in a process group of its own."""
+
+    def __init__(self, folder, scene, ranks, *args, name="out", **more):
+        self.dir, self.ranks = os.path.join(folder, name), ranks
+        self.log = os.path.join(folder, "stderr.txt")
+        shutil.rmtree(self.dir, True)
+        with open(self.log, "w") as err:
+            words = parallel_runs.command(ranks, "run", scene, "-o", self.dir, "--quiet", *args)
+            self.process = subprocess.Popen(words, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=err,
+                                            start_new_session=True, **more)
+
+    def pids(self):
+        """Rank -> process id."""
+        if self.ranks == 1:
+            return {0: self.process.pid}
+        found = {}
+        for path in glob.glob("/proc/[0-9]*/environ"):
+            try:
+                with open(path, "rb") as file:
+                    environ = dict(word.split(b"=", 1) for word in file.read().split(b"\0") if b"=" in word)
+                pid = int(path.split("/")[2])
+                is_ours = os.getsid(pid) == self.process.pid and os.readlink(f"/proc/{pid}/exe") == parallel_runs.DEMOCLES
+                if is_ours and b"OMPI_COMM_WORLD_RANK" in environ:
+                    found[int(environ[b"OMPI_COMM_WORLD_RANK"])] = pid
+            except (OSError, ProcessLookupError):
+                continue
+        if sorted(found) != list(range(self.ranks)):
+            raise AssertionError(f"not all ranks are there: {found}")
+        return found
+
+    def frames(self):
+        return sorted(glob.glob(os.path.join(self.dir, "frame_*.hdf")))
+
+    def wait_frames(self, n):
+        """Until so many frames are there."""
+        end = time.monotonic() + parallel_runs.HANG
+        while len(self.frames()) < n:
+            if self.process.poll() is not None or time.monotonic() > end:
+                raise AssertionError(f"no {n} frames: {self.end()} {self.err()}")
+            time.sleep(0.02)
+
+    def signal(self, number, rank):
+        os.kill(self.pids()[rank], number)
+
+    def end(self):
+        """Exit code. A job that does not end is killed and said to hang."""
+        try:
+            return self.process.wait(SOON)
+        except subprocess.TimeoutExpired:
+            os.killpg(self.process.pid, signal.SIGKILL)
+            self.process.wait()
+            return "hangs"
+
+    def alive(self):
+        """Whether any process of the job is still there."""
+        return any(os.getsid(int(p.split("/")[2])) == self.process.pid for p in glob.glob("/proc/[0-9]*") if os.path.exists(p)
+                   and int(p.split("/")[2]) != self.process.pid and _state(p) not in "ZX")
+
+    def err(self):
+        with open(self.log) as file:
+            return file.read()
+
+    def errors(self):
+        return re.findall(r"^democles: error: .*", self.err(), re.M)
+
+
+def _state(proc):
+    try:
+        with open(proc + "/stat") as file:
+            return file.read().rsplit(")", 1)[1].split()[0]
+    except OSError:
+        return "X"
+
+
+class Case(parallel_runs.Case):
+    def put(self, content):
+        import yaml
+        path = os.path.join(self.dir, "scene.yaml")
+        with open(path, "w") as file:
+            yaml.safe_dump(content, file)
+        return path
+
+    def job(self, scene, ranks, *args, **more):
+        job = Job(self.dir, scene, ranks, *args, **more)
+        self.addCleanup(lambda: job.process.poll() is None and os.killpg(job.process.pid, signal.SIGKILL))
+        return job
+
+    def whole(self, folder):
+        """All frames of a folder are complete; returns how many there are."""
+        paths = sorted(glob.glob(os.path.join(folder, "frame_*.hdf")))
+        for path in paths:
+            run = subprocess.run([parallel_runs.OWN[0], "check", path], capture_output=True, text=True, timeout=parallel_runs.HANG)
+            self.assertEqual((run.returncode, run.stdout), (0, ""), path)
+        return len(paths)
+
+    def leftovers(self, folder):
+        return [name for name in os.listdir(folder) if name.endswith(".tmp")] if os.path.isdir(folder) else []
