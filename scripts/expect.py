@@ -1,0 +1,76 @@
+"""What the checks of the cases share: time series and record of a run, and a verdict that says each number with its bound.
+
+A check is called with the folder of results, prints one line per number, and exits with 1 if one of them is out of its bounds."""
+import csv
+import json
+import pathlib
+import sys
+
+import numpy
+import yaml
+
+
+def series(folder, name):
+    """Columns of DIR/NAME.csv by their names, units left out."""
+    path = pathlib.Path(folder) / (name + ".csv")
+    if not path.is_file():
+        sys.exit(f"there is no {path}")
+    with open(path, newline="") as file:
+        rows = list(csv.reader(file))
+    values = numpy.array([[float(v) for v in row] for row in rows[1:]]).reshape(len(rows) - 1, len(rows[0]))
+    return {title.split(" [")[0]: values[:, k] for k, title in enumerate(rows[0])}
+
+
+def record(folder):
+    path = pathlib.Path(folder) / "run.json"
+    if not path.is_file():
+        sys.exit(f"there is no {path}: the run did not end")
+    return json.loads(path.read_text())
+
+
+def scene(folder):
+    """The resolved scene. Numbers that YAML 1.1 misreads (1e-05) are text: float() them."""
+    return yaml.safe_load((pathlib.Path(folder) / "resolved.yaml").read_text())
+
+
+def first_group(path):
+    """Name of the first group of elements in a scene as given."""
+    return yaml.safe_load(pathlib.Path(path).read_text())["elements"][0]["name"]
+
+
+def named(items, name):
+    """The one of a list in the scene that has this name."""
+    return next(item for item in items if item["name"] == name)
+
+
+def expected(script):
+    """expected.json beside the check."""
+    return json.loads((pathlib.Path(script).resolve().parent / "expected.json").read_text())
+
+
+class Verdict:
+    def __init__(self):
+        self.n_wrong = 0
+
+    def say(self, good, text):
+        print(("  good   " if good else "  WRONG  ") + text)
+        self.n_wrong += not good
+
+    def near(self, name, value, right, relative=0.0, absolute=0.0):
+        """|value - right| <= relative |right| + absolute."""
+        bound = relative * abs(right) + absolute
+        self.say(abs(value - right) <= bound, f"{name}: {value:.9g}, expected {right:.9g} +- {bound:.3g} (off by {value - right:.3g})")
+
+    def between(self, name, value, low, high):
+        self.say(low <= value <= high, f"{name}: {value:.9g}, expected between {low:.9g} and {high:.9g}")
+
+    def end(self):
+        if self.n_wrong:
+            sys.exit(f"{self.n_wrong} numbers are not as expected")
+
+
+def folder():
+    """The argument of a check."""
+    if len(sys.argv) != 2:
+        sys.exit(f"usage: {sys.argv[0]} DIR, the folder of results")
+    return pathlib.Path(sys.argv[1])
