@@ -7,6 +7,7 @@
 #ifndef DEMOCLES_CONTACT_MEMORY_H
 #define DEMOCLES_CONTACT_MEMORY_H
 
+#include "batch.h"
 #include "law_contact.h"
 #include "ledger.h"
 
@@ -25,20 +26,17 @@
 #define HISTORY_WIDTH (WALL_FORCE_AT + (WITH_WALL_WORK ? 3 : 0))
 
 /* Result record: force; with rotation also the torque, which is the same on both of two equal spheres; or the couple and both levers; or both
- * torques. The
- * shortest that will do: writing and reading it back is what the step's memory traffic consists of. */
+ * torques. In fours, so that the gather takes a force and a torque with one load each. */
 #define WITH_ROTATION (WITH_TANGENTIAL || WITH_ROLLING)
-#define RESULT_WIDTH (WITH_ROLLING ? 12 : !WITH_ROTATION ? 4 : WITH_SIZES ? 8 : 6)
+#define RESULT_WIDTH (WITH_ROLLING ? 12 : WITH_ROTATION ? 8 : 4)
 
 #ifdef __OPENCL_VERSION__
-/* Vectors in rows of local memory [row][CONTACT_GROUP], l the work-item. */
-#define CONTACT_GROUP 64
-#define ROW3_LOAD(type, memory, row, l)                                                                                                              \
-    type((memory)[(row)*CONTACT_GROUP + (l)], (memory)[((row) + 1) * CONTACT_GROUP + (l)], (memory)[((row) + 2) * CONTACT_GROUP + (l)])
+/* Vectors in rows of local memory [row][BATCH], l the contact. */
+#define ROW3_LOAD(type, memory, row, l) type((memory)[(row)*BATCH + (l)], (memory)[((row) + 1) * BATCH + (l)], (memory)[((row) + 2) * BATCH + (l)])
 #define ROW3_STORE(memory, row, l, x, y, z)                                                                                                          \
-    (memory)[(row)*CONTACT_GROUP + (l)] = (x);                                                                                                       \
-    (memory)[((row) + 1) * CONTACT_GROUP + (l)] = (y);                                                                                               \
-    (memory)[((row) + 2) * CONTACT_GROUP + (l)] = (z)
+    (memory)[(row)*BATCH + (l)] = (x);                                                                                                               \
+    (memory)[((row) + 1) * BATCH + (l)] = (y);                                                                                                       \
+    (memory)[((row) + 2) * BATCH + (l)] = (z)
 
 LAW vec3 plane3_load(__global const real *plane, size_t capacity, size_t l) { return v3(plane[l], plane[capacity + l], plane[2 * capacity + l]); }
 

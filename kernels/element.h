@@ -20,10 +20,8 @@
 
 #ifdef __OPENCL_VERSION__
 #if REAL_IS_FLOAT
-typedef float2 real2;
 typedef float4 real4;
 #else
-typedef double2 real2;
 typedef double4 real4;
 #endif
 #if POSITION_IS_FLOAT

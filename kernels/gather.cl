@@ -1,7 +1,7 @@
 /* Adds up what acts on each owned element, in ascending order of the partner's global id, then walls, then gravity; and moves it.
  *
- * The order does not depend on ranks, partition or storage, so the bits do not either. Pairs in which the element is the higher id (down) come
- * through an index list; those in which it is the lower (up) are one contiguous run of the pair list.
+ * The order does not depend on ranks, partition or storage, so the bits do not either. The row of an element lists its pairs (incidence.h), in eights
+ * that are filled up with a blank pair of force zero: a loop of varying length would cost a processor more in wrong guesses than the blanks do.
  *
  * Two uses. Fused: second kick of this step, first kick and drift of the next, one pass over the state. Observed: second kick only, force and torque
  * kept; output then sees positions and velocities of one time, and kick_drift.cl does the rest, with the same bits.
@@ -11,33 +11,38 @@
  * lint: WITH_PAIR_ROLLING requires WITH_PAIR_ROTATION
  * lint: WITH_WALL_ROTATION requires WITH_WALLS
  * lint: WITH_ORIENTATION requires WITH_SPIN */
+#include "incidence.h"
 #include "integrate.h"
 
-#define PAIR_WIDTH (WITH_PAIR_ROLLING ? 12 : !WITH_PAIR_ROTATION ? 4 : WITH_SIZES ? 8 : 6) /* RESULT_WIDTH of the pairs' program */
+#define PAIR_WIDTH (WITH_PAIR_ROLLING ? 12 : WITH_PAIR_ROTATION ? 8 : 4) /* RESULT_WIDTH of the pairs' program */
 #define WALL_WIDTH (WITH_WALL_ROTATION ? 8 : 4)
 
 #define FLAG_STALE 0
 #define FLAG_LOST 1
 
+/* 1, or -1 where is_down is 1, by its bits: no branch, no table. */
+#if REAL_IS_FLOAT
+#define SIGN(is_down) as_float(0x3f800000u | (is_down) << 31)
+#else
+#define SIGN(is_down) as_double(0x3ff0000000000000ul | (ulong)(is_down) << 63)
+#endif
+
 /* Adds the result record r of a pair to force and torque; is_down: the element is the higher id (j). */
-LAW void gather_add(__global const real *r, int is_down, real4 *f, real4 *t)
+LAW void gather_add(__global const real *r, uint is_down, real4 *f, real4 *t)
 {
     real4 a = vload4(0, r);
-    *f += (is_down ? (real)-1 : (real)1) * a;
+    *f = fma((real4)SIGN(is_down), a, *f);
     if (WITH_PAIR_ROLLING) {
         *t += vload4(is_down ? 2 : 1, r);
-    } else if (PAIR_WIDTH == 8) {
+    } else if (WITH_PAIR_ROTATION) {
         real4 couple = vload4(1, r);
-        *t += (is_down ? couple.s3 : a.s3) * couple;
-    } else if (PAIR_WIDTH == 6) {
-        real2 rest = vload2(2, r);
-        *t += (real4)(a.s3, rest.s0, rest.s1, 0);
+        *t += WITH_SIZES ? (is_down ? couple.s3 : a.s3) * couple : couple;
     }
 }
 
 __kernel __attribute__((reqd_work_group_size(64, 1, 1)))
 void gather(int n_owned, int observe, __global preal *position, __global real *motion,
-            __global const int *down_begin, __global const int *down, __global const int *up_begin, __global const int *up_count,
+            __global const int *incidence_begin, __global const int *incidence,
             __global const real *result,
 #if WITH_WALLS
             __global const int *wall_begin, __global const real *wall_result,
@@ -54,11 +59,12 @@ void gather(int n_owned, int observe, __global preal *position, __global real *m
     int e = get_global_id(0);
     if (e >= n_owned) return;
     real4 f = (real4)(0), t = (real4)(0);
-    /* One loop for both kinds: a loop's end is what a processor guesses wrong. The index read beyond the down entries is not used. */
-    int first = down_begin[e], n_down = down_begin[e + 1] - first, n = n_down + up_count[e], up = up_begin[e] - n_down;
-    for (int k = 0; k < n; k++) {
-        int is_down = k < n_down, listed = down[first + (is_down ? k : 0)];
-        gather_add(result + (size_t)(is_down ? listed : up + k) * PAIR_WIDTH, is_down, &f, &t);
+    for (int row = incidence_begin[e]; row < incidence_begin[e + 1]; row += INCIDENCE_ALIGN) {
+#pragma unroll
+        for (int k = 0; k < INCIDENCE_ALIGN; k++) {
+            uint end = (uint)incidence[row + k];
+            gather_add(result + (size_t)(end >> 1) * PAIR_WIDTH, end & 1, &f, &t);
+        }
     }
 #if WITH_WALLS
     for (int k = wall_begin[e]; k < wall_begin[e + 1]; k++) {

@@ -1,9 +1,8 @@
-/* Forces of pairs: one work-item per pair, no neighbour loop, no atomics. Each pair writes its own result record; gather.cl adds them up.
+/* Forces of pairs: no neighbour loop, no atomics. Each pair writes its own result record; gather.cl adds them up.
  *
- * Three phases through local memory. Loads and stores of whole records are vector loads, which keep pocl from vectorising a loop; the law
- * between them is pure scalar arithmetic on contiguous local arrays and becomes full-width SIMD code on a CPU. On a GPU the phases cost two barriers.
- * Nothing but work-group-uniform values may live across a barrier (a saved 64-bit index would halve the vector width in float), so every phase
- * asks for its work-item anew.
+ * Three phases through local memory, over batches of pairs (batch.h). Loads and stores of whole records are vector loads, which keep a compiler from
+ * vectorising a loop; the law between them is pure scalar arithmetic on contiguous local arrays and becomes full-width SIMD code on a CPU. On a
+ * GPU the phases cost two barriers.
  *
  * lint: WITH_TANGENTIAL_DAMPING requires WITH_TANGENTIAL
  * lint: WITH_TANGENTIAL requires WITH_SPIN
@@ -24,7 +23,7 @@
 #define L_ROWS (L_KIND + (WITH_MATERIALS ? 1 : 0))
 #define RESULT_ROWS (WITH_ROLLING ? 9 : WITH_ROTATION ? (WITH_SIZES ? 8 : 6) : 3)
 #define ROWS (L_ROWS > RESULT_ROWS ? L_ROWS : RESULT_ROWS)
-#define LOC(row) loc[(row)*CONTACT_GROUP + l]
+#define LOC(row) loc[(row)*BATCH + l]
 
 /* Where the law's numbers come from. */
 #if WITH_MATERIALS
@@ -91,74 +90,61 @@ LAW void pair_keep(struct contact_kinematics k, struct contact_result r, __local
 
 LAW void pair_store(__local const real *loc, size_t l, __global real *out)
 {
-    if (RESULT_WIDTH == 6) {
-        vstore4((real4)(LOC(0), LOC(1), LOC(2), LOC(3)), 0, out);
-        vstore2((real2)(LOC(4), LOC(5)), 2, out);
-        return;
-    }
-    int levers = RESULT_WIDTH == 8;
+    int levers = WITH_SIZES && !WITH_ROLLING;
     vstore4((real4)(LOC(0), LOC(1), LOC(2), levers ? LOC(6) : (real)0), 0, out);
     if (WITH_ROTATION) vstore4((real4)(LOC(3), LOC(4), LOC(5), levers ? LOC(7) : (real)0), 1, out);
     if (WITH_ROLLING) vstore4((real4)(LOC(6), LOC(7), LOC(8), (real)0), 2, out);
 }
 
-/* Pairs first <= p < end, first a multiple of CONTACT_GROUP; capacity: between two planes of history and ledger. n_material: edge of the table. */
-__kernel __attribute__((reqd_work_group_size(CONTACT_GROUP, 1, 1)))
+/* Pairs first <= p < end, first a multiple of BATCH; capacity: between two planes of history and ledger. n_material: edge of the table. */
+__kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1)))
 void pair_force(int first, int end, int capacity, __global const preal *position, __global const real *motion, __global const int *pair_i,
                 __global const int *pair_j,
 #if WITH_HISTORY
-                __global int *state, __global real *history,
+                __global int *restrict state, __global real *restrict history,
 #endif
 #if WITH_ENERGY
-                __global double *ledger,
+                __global double *restrict ledger,
 #endif
 #if WITH_PERIODIC_X || WITH_PERIODIC_Y || WITH_PERIODIC_Z
                 preal period_x, preal period_y, preal period_z,
 #endif
 #if WITH_SIZES || WITH_MATERIALS
-                int n_material, __global const real *table,
+                int n_material, __global const real *restrict table,
 #else
                 PARAMETER_ARGUMENTS,
 #endif
 #if !WITH_SIZES
                 real radius,
 #endif
-                __global real *result, real dt)
+                __global real *restrict result, real dt)
 {
-    __local real loc[ROWS * CONTACT_GROUP];
-    __local preal distance[3 * CONTACT_GROUP];
-    size_t base = (size_t)first + get_group_id(0) * CONTACT_GROUP;
-    size_t left = (size_t)end > base ? (size_t)end - base : 0, planes = (size_t)capacity;
+    __local real loc[ROWS * BATCH];
+    __local preal distance[3 * BATCH];
+    size_t base = (size_t)first + get_group_id(0) * BATCH;
+    size_t left = (size_t)end > base ? (size_t)end - base : 0, n = left < BATCH ? left : BATCH, planes = (size_t)capacity;
 #if !(WITH_SIZES || WITH_MATERIALS)
     const int n_material = 0;
 #endif
-    {
-        size_t l = get_local_id(0);
-        if (l < left) pair_load(pair_i[base + l], pair_j[base + l], position, motion, (real)n_material, distance, loc, l);
-    }
-    barrier(CLK_LOCAL_MEM_FENCE);
-    {
-        size_t l = get_local_id(0);
-        if (l < left) {
-            pvec3 D = ROW3_LOAD(p3, distance, 0, l);
-            vec3 u = ROW3_LOAD(v3, loc, L_U, l), zero = v3(0, 0, 0), wi = zero, wj = zero;
+    FOR_BATCH (l, n) pair_load(pair_i[base + l], pair_j[base + l], position, motion, (real)n_material, distance, loc, l);
+    BATCH_BARRIER;
+    BATCH_VECTOR
+    FOR_BATCH (l, n) {
+        pvec3 D = ROW3_LOAD(p3, distance, 0, l);
+        vec3 u = ROW3_LOAD(v3, loc, L_U, l), zero = v3(0, 0, 0), wi = zero, wj = zero;
 #if WITH_PERIODIC_X || WITH_PERIODIC_Y || WITH_PERIODIC_Z
-            D = nearest_images(D, period_x, period_y, period_z);
+        D = nearest_images(D, period_x, period_y, period_z);
 #endif
-            if (WITH_ROTATION) wi = ROW3_LOAD(v3, loc, L_WI, l);
-            if (WITH_ROTATION && BOTH_SPINS) wj = ROW3_LOAD(v3, loc, L_WJ, l);
-            struct contact_parameters p = PARAMETERS;
-            struct contact_kinematics k = contact_kinematics_pair(D, u, zero, wi, wj, RADIUS(0), RADIUS(1), dt);
-            struct contact_history h = HISTORY_LOAD(base, planes, l);
-            struct contact_result r = contact_law(k, p, dt, &h);
-            HISTORY_STORE(h, base, planes, l);
-            LEDGER_ADD(r, base, planes, l);
-            pair_keep(k, r, loc, l);
-        }
+        if (WITH_ROTATION) wi = ROW3_LOAD(v3, loc, L_WI, l);
+        if (WITH_ROTATION && BOTH_SPINS) wj = ROW3_LOAD(v3, loc, L_WJ, l);
+        struct contact_parameters p = PARAMETERS;
+        struct contact_kinematics k = contact_kinematics_pair(D, u, zero, wi, wj, RADIUS(0), RADIUS(1), dt);
+        struct contact_history h = HISTORY_LOAD(base, planes, l);
+        struct contact_result r = contact_law(k, p, dt, &h);
+        HISTORY_STORE(h, base, planes, l);
+        LEDGER_ADD(r, base, planes, l);
+        pair_keep(k, r, loc, l);
     }
-    barrier(CLK_LOCAL_MEM_FENCE);
-    {
-        size_t l = get_local_id(0);
-        if (l < left) pair_store(loc, l, result + (base + l) * RESULT_WIDTH);
-    }
+    BATCH_BARRIER;
+    FOR_BATCH (l, n) pair_store(loc, l, result + (base + l) * RESULT_WIDTH);
 }

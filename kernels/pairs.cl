@@ -3,6 +3,7 @@
  * A pair belongs to the row of its lower global id (up entries). Rows whose up entries are all owned, of owned elements, make the interior pairs; the
  * rest are boundary pairs and wait for the ghosts. Boundary pairs begin at the next multiple of 64. */
 #include "types.h"
+#include "incidence.h"
 #include "remember.h"
 #define PAIR_ALIGN 64
 
@@ -22,11 +23,12 @@ LAW int find(__global const long *gid, int begin, int end, long wanted)
     return k >= begin && gid[k] == wanted ? k : -1;
 }
 
-/* split [n_all]: first up entry of the row; interior, boundary [n_all + 1]: up entries, one of both 0; down [n_owned + 1]: down entries. */
+/* split [n_all]: first up entry of the row; interior, boundary [n_all + 1]: up entries, one of both 0; incidence
+ * [n_owned + 1]: length of the row in the gather's list. */
 __kernel __attribute__((reqd_work_group_size(64, 1, 1)))
 void pair_count(int n_owned, int n_all, __global const long *gid, __global const int *row_begin, __global const int *row,
                 __global const long *row_gid,
-                __global int *split, __global int *interior, __global int *boundary, __global int *down)
+                __global int *split, __global int *interior, __global int *boundary, __global int *incidence)
 {
     int e = get_global_id(0);
     if (e >= n_all) return;
@@ -37,7 +39,7 @@ void pair_count(int n_owned, int n_all, __global const long *gid, __global const
     split[e] = up;
     interior[e] = inside ? end - up : 0;
     boundary[e] = inside ? 0 : end - up;
-    if (e < n_owned) down[e] = up - begin;
+    if (e < n_owned) incidence[e] = (end - begin + INCIDENCE_ALIGN - 1) / INCIDENCE_ALIGN * INCIDENCE_ALIGN;
 }
 
 /* interior, boundary: scanned. up_begin, up_count [n_all]; pair_i, pair_j [n_pair]. first_boundary: interior pairs rounded up to PAIR_ALIGN. */
@@ -58,18 +60,21 @@ void pair_fill(int n_all, int first_boundary, __global const int *row_begin, __g
     }
 }
 
-/* down_begin [n_owned + 1] scanned; down: for every down entry the number of its pair, which stands in the row of the lower element. */
+/* incidence_begin [n_owned + 1] scanned; incidence: see incidence.h. A pair stands in the row of its lower element. blank: the pair of force zero. */
 __kernel __attribute__((reqd_work_group_size(64, 1, 1)))
-void pair_link(int n_owned, __global const long *gid, __global const int *row_begin, __global const int *row, __global const long *row_gid,
-               __global const int *split, __global const int *up_begin, __global const int *down_begin, __global int *down)
+void pair_link(int n_owned, int blank, __global const long *gid, __global const int *row_begin, __global const int *row,
+               __global const long *row_gid, __global const int *split, __global const int *up_begin, __global const int *incidence_begin,
+               __global int *incidence)
 {
     int e = get_global_id(0);
     if (e >= n_owned) return;
-    int at = down_begin[e];
-    for (int k = row_begin[e]; k < split[e]; k++) {
-        int b = row[k];
-        down[at++] = up_begin[b] + find(row_gid, split[b], row_begin[b + 1], gid[e]) - split[b];
+    int at = incidence_begin[e], end = incidence_begin[e + 1];
+    for (int k = row_begin[e]; k < row_begin[e + 1]; k++) {
+        int is_down = k < split[e], lower = is_down ? row[k] : e, place = k;
+        if (is_down) place = find(row_gid, split[lower], row_begin[lower + 1], gid[e]);
+        incidence[at++] = 2 * (up_begin[lower] + place - split[lower]) + is_down;
     }
+    while (at < end) incidence[at++] = 2 * blank;
 }
 
 /* Histories. The owned end of each pair knows where it was in the old lists (old_index: its old number, or n_old + its place among the arrivals,
@@ -81,8 +86,8 @@ void pair_link(int n_owned, __global const long *gid, __global const int *row_be
 __kernel __attribute__((reqd_work_group_size(64, 1, 1)))
 void pair_carry(int n_owned, int n_all, int n_old, __global const long *gid, __global const int *up_begin, __global const int *up_count,
                 __global const int *pair_j, __global const int *old_index,
-                __global const int *old_row_begin, __global const long *old_row_gid, __global const int *old_split,
-                __global const int *old_up_begin, __global const int *old_down_begin, __global const int *old_down,
+                __global const int *old_row_begin, __global const long *old_row_gid, __global const int *old_incidence_begin,
+                __global const int *old_incidence,
                 __global const int *arrival_begin, __global const long *arrival_gid, __global const int *arrival_state,
                 __global const real *arrival_history,
                 int width, int capacity, int old_capacity, int arrival_capacity,
@@ -97,8 +102,7 @@ void pair_carry(int n_owned, int n_all, int n_old, __global const long *gid, __g
         if (old < n_old) {
             int k = find(old_row_gid, old_row_begin[old], old_row_begin[old + 1], partner);
             if (k < 0) continue;
-            int split = old_split[old];
-            int q = k < split ? old_down[old_down_begin[old] + k - old_row_begin[old]] : old_up_begin[old] + k - split;
+            int q = old_incidence[old_incidence_begin[old] + k - old_row_begin[old]] >> 1;
             state[p] = old_state[q];
             for (int c = 0; c < width; c++) history[(size_t)c * capacity + p] = old_history[(size_t)c * old_capacity + q];
         } else {
@@ -112,8 +116,8 @@ void pair_carry(int n_owned, int n_all, int n_old, __global const long *gid, __g
 
 /* Contacts with a history of the elements that leave (index [n]): counted into begin, then written in ascending partner id. */
 __kernel __attribute__((reqd_work_group_size(64, 1, 1)))
-void pair_leave(int n, int fill, __global const int *index, __global const int *row_begin, __global const long *row_gid, __global const int *split,
-                __global const int *up_begin, __global const int *down_begin, __global const int *down, __global const int *state,
+void pair_leave(int n, int fill, __global const int *index, __global const int *row_begin, __global const long *row_gid,
+                __global const int *incidence_begin, __global const int *incidence, __global const int *state,
                 __global const real *history, int width, int capacity, int leave_capacity, __global int *begin, __global long *leave_gid,
                 __global int *leave_state, __global real *leave_history)
 {
@@ -121,7 +125,7 @@ void pair_leave(int n, int fill, __global const int *index, __global const int *
     if (i >= n) return;
     int e = index[i], at = fill ? begin[i] : 0;
     for (int k = row_begin[e]; k < row_begin[e + 1]; k++) {
-        int p = k < split[e] ? down[down_begin[e] + k - row_begin[e]] : up_begin[e] + k - split[e];
+        int p = incidence[incidence_begin[e] + k - row_begin[e]] >> 1;
         if (!contact_remembers(state[p], history, width, capacity, p)) continue;
         if (fill) {
             leave_gid[at] = row_gid[k];

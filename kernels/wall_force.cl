@@ -1,4 +1,4 @@
-/* Forces of walls on elements: one work-item per candidate (element, primitive), in the three phases of pair_force.cl.
+/* Forces of walls on elements, by candidates (element, primitive), in the three phases of pair_force.cl.
  *
  * The wall is body j of the contact: no radius, no lever, as heavy as it likes. Geometry is taken twice, at the end of the step and at its middle, as
  * the second-order friction of law_slider.h wants it; a moving wall is looked at from its own frame.
@@ -25,8 +25,8 @@
 #define P_RADIUS 3
 #define P_PRIMITIVE 4
 #define P_ROWS 16
-#define LOC(row) loc[(row)*CONTACT_GROUP + l]
-#define PLACE(row) place[(row)*CONTACT_GROUP + l]
+#define LOC(row) loc[(row)*BATCH + l]
+#define PLACE(row) place[(row)*BATCH + l]
 #define WALL_RESULT_WIDTH (WITH_ROTATION ? 8 : 4)
 
 #if WITH_TABLE
@@ -76,90 +76,82 @@ LAW struct wall_primitive wall_stored(__local const preal *place, size_t l)
 }
 
 /* n_material: edge of the table, whose rows are (element's, wall's material). */
-__kernel __attribute__((reqd_work_group_size(CONTACT_GROUP, 1, 1)))
+__kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1)))
 void wall_force(int n_candidate, int capacity, __global const preal *position, __global const real *motion, __global const int *candidate,
                 __global const int *candidate_element, __global const preal *primitive,
 #if WITH_MOVING || WITH_TABLE
                 __global const int *wall_of,
 #endif
 #if WITH_MOVING
-                __global const preal *pose,
+                __global const preal *restrict pose,
 #endif
 #if WITH_TRIANGLE
-                __global const int *keep,
+                __global const int *restrict keep,
 #endif
 #if WITH_HISTORY
-                __global int *state, __global real *history,
+                __global int *restrict state, __global real *restrict history,
 #endif
 #if WITH_ENERGY
-                __global double *ledger,
+                __global double *restrict ledger,
 #endif
 #if WITH_TABLE
                 int n_material, __global const int *wall_material,
 #endif
 #if WITH_TABLE || WITH_SIZES
-                __global const real *table,
+                __global const real *restrict table,
 #else
                 PARAMETER_ARGUMENTS,
 #endif
-                __global real *result, real dt)
+                __global real *restrict result, real dt)
 {
-    __local real loc[ROWS * CONTACT_GROUP];
-    __local preal place[P_ROWS * CONTACT_GROUP];
+    __local real loc[ROWS * BATCH];
+    __local preal place[P_ROWS * BATCH];
 #if WITH_MOVING
-    __local int wall[CONTACT_GROUP];
+    __local int wall[BATCH];
 #endif
-    size_t base = get_group_id(0) * CONTACT_GROUP, planes = (size_t)capacity;
-    size_t left = (size_t)n_candidate > base ? (size_t)n_candidate - base : 0;
-    {
-        size_t l = get_local_id(0);
-        if (l < left) {
-            int e = candidate_element[base + l], k = candidate[base + l];
-            wall_load(e, primitive + WALL_PRIMITIVE_WIDTH * k, position, motion, place, loc, l);
+    size_t base = get_group_id(0) * BATCH, planes = (size_t)capacity;
+    size_t left = (size_t)n_candidate > base ? (size_t)n_candidate - base : 0, n = left < BATCH ? left : BATCH;
+    FOR_BATCH (l, n) {
+        int e = candidate_element[base + l], k = candidate[base + l];
+        wall_load(e, primitive + WALL_PRIMITIVE_WIDTH * k, position, motion, place, loc, l);
 #if WITH_MOVING
-            wall[l] = wall_of[k];
+        wall[l] = wall_of[k];
 #endif
 #if WITH_TABLE
-            real kind = WITH_MATERIALS ? motion[(size_t)e * MOTION_STRIDE + SPIN_AT + 3] : (real)0;
-            LOC(L_KIND) = kind * (real)n_material + (real)wall_material[wall_of[k]];
+        real kind = WITH_MATERIALS ? motion[(size_t)e * MOTION_STRIDE + SPIN_AT + 3] : (real)0;
+        LOC(L_KIND) = kind * (real)n_material + (real)wall_material[wall_of[k]];
 #endif
-        }
     }
-    barrier(CLK_LOCAL_MEM_FENCE);
-    {
-        size_t l = get_local_id(0);
-        if (l < left) {
-            real radius = (real)PLACE(P_RADIUS);
-            vec3 v = ROW3_LOAD(v3, loc, L_V, l), w = v3(0, 0, 0);
-            if (WITH_ROTATION) w = ROW3_LOAD(v3, loc, L_W, l);
-            struct wall_geometry g = GEOMETRY(wall_stored(place, l), ROW3_LOAD(p3, place, P_X, l), v);
-            struct contact_parameters p = PARAMETERS;
-            struct contact_history h = HISTORY_LOAD(base, planes, l);
+    BATCH_BARRIER;
+    BATCH_VECTOR
+    FOR_BATCH (l, n) {
+        real radius = (real)PLACE(P_RADIUS);
+        vec3 v = ROW3_LOAD(v3, loc, L_V, l), w = v3(0, 0, 0);
+        if (WITH_ROTATION) w = ROW3_LOAD(v3, loc, L_W, l);
+        struct wall_geometry g = GEOMETRY(wall_stored(place, l), ROW3_LOAD(p3, place, P_X, l), v);
+        struct contact_parameters p = PARAMETERS;
+        struct contact_history h = HISTORY_LOAD(base, planes, l);
 #if WITH_TRIANGLE
-            int counts = keep[base + l];
-            g.distance = counts ? g.distance : (preal)2 * (preal)radius;
-            h.state = counts ? h.state : 0;
+        int counts = keep[base + l];
+        g.distance = counts ? g.distance : (preal)2 * (preal)radius;
+        h.state = counts ? h.state : 0;
 #endif
-            struct contact_kinematics k = contact_kinematics_wall(g.n, g.n_half, radius - (real)g.distance, radius - (real)g.distance_half, v, g.v,
-                                                                  w, radius);
-            struct contact_result r = contact_law(k, p, dt, &h);
-            HISTORY_STORE(h, base, planes, l);
-            LEDGER_ADD(r, base, planes, l);
+        struct contact_kinematics k =
+            contact_kinematics_wall(g.n, g.n_half, radius - (real)g.distance, radius - (real)g.distance_half, v, g.v, w, radius);
+        struct contact_result r = contact_law(k, p, dt, &h);
+        HISTORY_STORE(h, base, planes, l);
+        LEDGER_ADD(r, base, planes, l);
 #if WITH_WALL_WORK
-            ledger[(size_t)LEDGER_WORK * planes + base + l] += (double)wall_work(r.force, g.v, dt, history + base, planes, l);
+        ledger[(size_t)LEDGER_WORK * planes + base + l] += (double)wall_work(r.force, g.v, dt, history + base, planes, l);
 #endif
-            vec3 torque = v3_fma(k.l_i, r.couple, r.moment);
-            ROW3_STORE(loc, 0, l, r.force.x, r.force.y, r.force.z);
-            if (WITH_ROTATION) { ROW3_STORE(loc, 3, l, torque.x, torque.y, torque.z); }
-        }
+        vec3 torque = v3_fma(k.l_i, r.couple, r.moment);
+        ROW3_STORE(loc, 0, l, r.force.x, r.force.y, r.force.z);
+        if (WITH_ROTATION) { ROW3_STORE(loc, 3, l, torque.x, torque.y, torque.z); }
     }
-    barrier(CLK_LOCAL_MEM_FENCE);
-    {
-        size_t l = get_local_id(0);
-        if (l < left) {
-            __global real *out = result + (base + l) * WALL_RESULT_WIDTH;
-            vstore4((real4)(LOC(0), LOC(1), LOC(2), (real)0), 0, out);
-            if (WITH_ROTATION) vstore4((real4)(LOC(3), LOC(4), LOC(5), (real)0), 1, out);
-        }
+    BATCH_BARRIER;
+    FOR_BATCH (l, n) {
+        __global real *out = result + (base + l) * WALL_RESULT_WIDTH;
+        vstore4((real4)(LOC(0), LOC(1), LOC(2), (real)0), 0, out);
+        if (WITH_ROTATION) vstore4((real4)(LOC(3), LOC(4), LOC(5), (real)0), 1, out);
     }
 }

@@ -37,7 +37,7 @@ enum { ROW_FOUND = 32 }; /* as in kernels/rows.cl */
 double check_pair_bytes(const struct features *features)
 {
     size_t real_bytes = particles_real(features), whole = sizeof(cl_int); /* [byte] */
-    size_t list = 2 * (whole + sizeof(cl_long)) + 3 * whole;              /* rows; pair_i, pair_j, down */
+    size_t list = 2 * (whole + sizeof(cl_long)) + 4 * whole;              /* rows; pair_i, pair_j, incidence of both */
     if (WITH_HISTORY) list += whole + (size_t)(HISTORY_WIDTH)*real_bytes;
     return (double)(2 * list + (size_t)(RESULT_WIDTH)*real_bytes + (WITH_ENERGY ? LEDGER_WIDTH * sizeof(cl_double) : 0));
 }

@@ -59,7 +59,7 @@ struct launch *launch_create(const struct program *program, const char *kernel)
     launch->program = program;
     launch->name = fail_strdup(kernel);
     launch->kernel = program_kernel(program, kernel);
-    launch->local = local_size(launch);
+    launch->local = launch->batch = local_size(launch);
     find_args(launch);
     if (program->dev->profile) launch->profile = fail_alloc(sizeof(struct profile));
     return launch;
@@ -78,6 +78,11 @@ void launch_free(struct launch *launch)
     free(launch->profile);
     free(launch->name);
     free(launch);
+}
+
+void launch_set_batch(struct launch *launch, size_t n_item)
+{
+    launch->batch = n_item;
 }
 
 static int find(const struct launch *launch, const char *arg)
@@ -262,7 +267,7 @@ void launch_run(struct launch *launch, cl_command_queue queue, int64_t n_item, c
     }
     struct device *dev = launch->program->dev;
     struct profile *p = launch->profile;
-    size_t global = launch_padded(n_item, launch->local);
+    size_t n_group = ((size_t)n_item + launch->batch - 1) / launch->batch, global = launch_padded((int64_t)(n_group * launch->local), launch->local);
     cl_event own, *done = event ? event : p ? &own : NULL;
 
     refresh(launch);

@@ -26,6 +26,7 @@ struct launch {
     int n_arg;
     struct launch_arg *arg; /* [n_arg] */
     size_t local;           /* work-items per group */
+    size_t batch;           /* items per group: local, unless launch_set_batch says otherwise */
     size_t largest;         /* largest global size so far: a larger one may compile */
     int64_t n_run;
     void *profile;  /* events under way, only with dev->profile */
@@ -34,6 +35,9 @@ struct launch {
 
 struct launch *launch_create(const struct program *program, const char *kernel);
 void launch_free(struct launch *launch); /* NULL is fine */
+
+/* Says that each group does n_item items, whatever its size (kernels/batch.h). */
+void launch_set_batch(struct launch *launch, size_t n_item);
 
 /* Whether this build of the kernel has the argument. */
 bool launch_has(const struct launch *launch, const char *arg);

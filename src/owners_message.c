@@ -21,10 +21,8 @@ static void bind_leave(struct launch *k, const struct pairs *pairs, const struct
         const struct pair_list *l = &pairs->now;
         launch_bind_buffer(k, "row_begin", &l->row_begin);
         launch_bind_buffer(k, "row_gid", &l->row_gid);
-        launch_bind_buffer(k, "split", &l->split);
-        launch_bind_buffer(k, "up_begin", &l->up_begin);
-        launch_bind_buffer(k, "down_begin", &l->down_begin);
-        launch_bind_buffer(k, "down", &l->down);
+        launch_bind_buffer(k, "incidence_begin", &l->incidence_begin);
+        launch_bind_buffer(k, "incidence", &l->incidence);
         launch_bind_buffer(k, "state", &l->state);
         launch_bind_buffer(k, "history", &l->history);
         launch_set_int(k, "capacity", (int)l->capacity);

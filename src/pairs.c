@@ -9,15 +9,15 @@ enum { PAIR_ALIGN = 64, ROW_FOUND = 32, LIST_BUFFERS = 12 }; /* the first two as
 
 static void list_buffers(struct pair_list *l, struct buffer *all[LIST_BUFFERS])
 {
-    struct buffer *b[LIST_BUFFERS] = {&l->row_begin, &l->row, &l->row_gid, &l->split, &l->up_begin, &l->up_count, &l->down_begin, &l->down,
+    struct buffer *b[LIST_BUFFERS] = {&l->row_begin, &l->row, &l->row_gid, &l->split, &l->up_begin, &l->up_count, &l->incidence_begin, &l->incidence,
         &l->pair_i, &l->pair_j, &l->state, &l->history};
     memcpy(all, b, sizeof b);
 }
 
 static void list_init(struct device *dev, struct pair_list *l)
 {
-    static const char *const name[LIST_BUFFERS] = {
-        "row begin", "rows", "row gids", "row split", "up begin", "up count", "down begin", "down", "pair i", "pair j", "pair state", "pair history"};
+    static const char *const name[LIST_BUFFERS] = {"row begin", "rows", "row gids", "row split", "up begin", "up count", "incidence begin",
+        "incidence", "pair i", "pair j", "pair state", "pair history"};
     struct buffer *all[LIST_BUFFERS];
     list_buffers(l, all);
     for (int i = 0; i < LIST_BUFFERS; i++) {
@@ -105,7 +105,7 @@ static void count_pairs(struct device *dev, struct pairs *pairs, struct scan *sc
     size_t per_element = ((size_t)l->n_all + 1) * sizeof(cl_int);
     struct buffer *counted[] = {&l->split, &l->up_begin, &l->up_count, &pairs->interior, &pairs->boundary};
     for (int i = 0; i < 5; i++) buffer_reserve(dev, counted[i], per_element);
-    buffer_reserve(dev, &l->down_begin, ((size_t)l->n_owned + 1) * sizeof(cl_int));
+    buffer_reserve(dev, &l->incidence_begin, ((size_t)l->n_owned + 1) * sizeof(cl_int));
     launch_set_int(pairs->count, "n_owned", (int)l->n_owned);
     launch_set_int(pairs->count, "n_all", (int)l->n_all);
     launch_bind_buffer(pairs->count, "gid", &p->field[FIELD_GID].now);
@@ -115,19 +115,29 @@ static void count_pairs(struct device *dev, struct pairs *pairs, struct scan *sc
     launch_bind_buffer(pairs->count, "split", &l->split);
     launch_bind_buffer(pairs->count, "interior", &pairs->interior);
     launch_bind_buffer(pairs->count, "boundary", &pairs->boundary);
-    launch_bind_buffer(pairs->count, "down", &l->down_begin);
+    launch_bind_buffer(pairs->count, "incidence", &l->incidence_begin);
     launch_run(pairs->count, dev->compute, l->n_all, 0, NULL, NULL);
     l->n_interior = scan_total(dev, scan, &pairs->interior, l->n_all);
     l->n_boundary = scan_total(dev, scan, &pairs->boundary, l->n_all);
     cl_int own; /* rows of owned elements come first */
     buffer_read(dev, &pairs->boundary, (size_t)l->n_owned * sizeof own, sizeof own, &own);
     l->n_own = l->n_interior + own;
-    l->n_down = scan_total(dev, scan, &l->down_begin, l->n_owned);
+    l->n_incidence = scan_total(dev, scan, &l->incidence_begin, l->n_owned);
     l->first_boundary = (l->n_interior + PAIR_ALIGN - 1) / PAIR_ALIGN * PAIR_ALIGN;
     int64_t n = l->first_boundary + l->n_boundary;
-    if (n > INT32_MAX - 4 * PAIR_ALIGN || l->n_row > INT32_MAX)
+    if (n > INT32_MAX / 2 - 4 * PAIR_ALIGN || l->n_row > INT32_MAX / 2)
         fail_stop(EXIT_DEVICE, "%lld pairs on one rank are more than its lists can number; use more ranks", (long long)n);
     l->capacity = (n + PAIR_ALIGN - 1) / PAIR_ALIGN * PAIR_ALIGN + 16; /* not a power of two, so that planes do not fall onto each other in caches */
+}
+
+/* Room for a record per pair; the last one stays zero, for the blank pair of kernels/incidence.h. */
+static void reserve_results(struct device *dev, struct pairs *pairs, size_t real)
+{
+    size_t capacity = (size_t)pairs->now.capacity, bytes = (size_t)pairs->layout.result * real;
+    char *zero = fail_alloc(bytes);
+    buffer_reserve(dev, &pairs->result, capacity * bytes);
+    buffer_write(dev, &pairs->result, (capacity - 1) * bytes, bytes, zero);
+    free(zero);
 }
 
 static void fill_pairs(struct device *dev, struct pairs *pairs, const struct particles *p)
@@ -136,15 +146,16 @@ static void fill_pairs(struct device *dev, struct pairs *pairs, const struct par
     size_t real = particles_real(pairs->features), capacity = (size_t)l->capacity;
     buffer_reserve(dev, &l->pair_i, capacity * sizeof(cl_int));
     buffer_reserve(dev, &l->pair_j, capacity * sizeof(cl_int));
-    buffer_reserve(dev, &l->down, ((size_t)l->n_down + 1) * sizeof(cl_int)); /* the gather reads one beyond */
-    buffer_reserve(dev, &pairs->result, capacity * (size_t)pairs->layout.result * real);
+    buffer_reserve(dev, &l->incidence, (size_t)l->n_incidence * sizeof(cl_int));
+    reserve_results(dev, pairs, real);
     launch_set_int(pairs->fill, "n_all", (int)l->n_all);
     launch_set_int(pairs->fill, "first_boundary", (int)l->first_boundary);
     launch_set_int(pairs->link, "n_owned", (int)l->n_owned);
     launch_bind_buffer(pairs->link, "gid", &p->field[FIELD_GID].now);
     launch_bind_buffer(pairs->link, "row_gid", &l->row_gid);
-    launch_bind_buffer(pairs->link, "down_begin", &l->down_begin);
-    launch_bind_buffer(pairs->link, "down", &l->down);
+    launch_set_int(pairs->link, "blank", (int)l->capacity - 1);
+    launch_bind_buffer(pairs->link, "incidence_begin", &l->incidence_begin);
+    launch_bind_buffer(pairs->link, "incidence", &l->incidence);
     struct launch *both[] = {pairs->fill, pairs->link};
     for (int i = 0; i < 2; i++) {
         launch_bind_buffer(both[i], "row_begin", &l->row_begin);
@@ -198,10 +209,10 @@ void pairs_carry(struct device *dev, struct pairs *pairs, const struct particles
         const char *name;
         const struct buffer *buffer;
     } bind[] = {{"gid", &p->field[FIELD_GID].now}, {"up_begin", &l->up_begin}, {"up_count", &l->up_count}, {"pair_j", &l->pair_j},
-        {"old_index", old_index}, {"old_row_begin", &o->row_begin}, {"old_row_gid", &o->row_gid}, {"old_split", &o->split},
-        {"old_up_begin", &o->up_begin}, {"old_down_begin", &o->down_begin}, {"old_down", &o->down}, {"arrival_begin", &pairs->arrivals.begin},
-        {"arrival_gid", &pairs->arrivals.key}, {"arrival_state", &pairs->arrivals.state}, {"arrival_history", &pairs->arrivals.history},
-        {"old_state", &o->state}, {"old_history", &o->history}, {"state", &l->state}, {"history", &l->history}};
+        {"old_index", old_index}, {"old_row_begin", &o->row_begin}, {"old_row_gid", &o->row_gid}, {"old_incidence_begin", &o->incidence_begin},
+        {"old_incidence", &o->incidence}, {"arrival_begin", &pairs->arrivals.begin}, {"arrival_gid", &pairs->arrivals.key},
+        {"arrival_state", &pairs->arrivals.state}, {"arrival_history", &pairs->arrivals.history}, {"old_state", &o->state},
+        {"old_history", &o->history}, {"state", &l->state}, {"history", &l->history}};
     for (size_t i = 0; i < sizeof bind / sizeof *bind; i++) launch_bind_buffer(k, bind[i].name, bind[i].buffer);
     launch_run(k, dev->compute, l->n_all, 0, NULL, NULL);
 }

@@ -9,12 +9,12 @@
 
 struct pair_list {
     int64_t n_owned, n_all;
-    int64_t n_row, n_interior, first_boundary, n_boundary, n_down;
+    int64_t n_row, n_interior, first_boundary, n_boundary, n_incidence;
     int64_t n_own;                                /* pairs whose lower element this rank owns: every pair counts on one rank */
     int64_t capacity;                             /* pairs that the arrays hold */
     struct buffer row_begin, row, row_gid;        /* [n_all + 1], [n_row], [n_row] */
     struct buffer split, up_begin, up_count;      /* [n_all] */
-    struct buffer down_begin, down;               /* [n_owned + 1], [n_down] */
+    struct buffer incidence_begin, incidence;     /* [n_owned + 1], [n_incidence], see kernels/incidence.h */
     struct buffer pair_i, pair_j, state, history; /* [capacity], history [layout.history][capacity] */
 };
 

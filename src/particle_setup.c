@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "../kernels/batch.h"
 #include "contact_table.h"
 #include "energy.h"
 #include "fail.h"
@@ -74,6 +75,8 @@ static void create_kernels(struct sim *s)
     s->select_room = launch_create(s->program_lists, "select_room");
     s->pair_force = launch_create(s->program_pair, "pair_force");
     s->wall_force = s->program_wall ? launch_create(s->program_wall, "wall_force") : NULL;
+    launch_set_batch(s->pair_force, BATCH);
+    if (s->wall_force) launch_set_batch(s->wall_force, BATCH);
     s->gather = launch_create(s->program_body, "gather");
     s->kick_drift = launch_create(s->program_body, "kick_drift");
     buffer_init(&s->table_pair, "pair table");
@@ -102,10 +105,10 @@ void particle_bind(struct sim *s)
     bind_all(s->pair_force, pair_name,
         (const struct buffer *const[]){state, state, &l->pair_i, &l->pair_j, &l->state, &l->history, &s->pairs->ledger, &s->pairs->result});
     launch_set_int(s->pair_force, "capacity", (int)l->capacity);
-    static const char *const body_name[] = {"position", "motion", "down_begin", "down", "up_begin", "up_count", "result", "wall_begin", "wall_result",
+    static const char *const body_name[] = {"position", "motion", "incidence_begin", "incidence", "result", "wall_begin", "wall_result",
         "orientation", "force", "torque", "reference", "flags", NULL};
     struct wall_contacts *w = s->wall_contacts;
-    const struct buffer *body[] = {state, state, &l->down_begin, &l->down, &l->up_begin, &l->up_count, &s->pairs->result, w ? &w->now.begin : NULL,
+    const struct buffer *body[] = {state, state, &l->incidence_begin, &l->incidence, &s->pairs->result, w ? &w->now.begin : NULL,
         w ? &w->result : NULL, &p->field[FIELD_ORIENTATION].now, &p->force, &p->torque, &p->reference, &p->flags};
     bind_all(s->gather, body_name, body);
     bind_all(s->kick_drift, body_name, body);

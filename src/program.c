@@ -50,8 +50,8 @@ struct program *program_build(struct device *dev, const struct comm *comm, const
     char *source = program_source(sources);
     program->dev = dev;
     program->name = fail_strdup(name);
-    program->options =
-        fail_format("-cl-std=CL1.2 -w -cl-kernel-arg-info%s %s", dev->fp32_correct_divide ? " -cl-fp32-correctly-rounded-divide-sqrt" : "", options);
+    program->options = fail_format("-cl-std=CL1.2 -w -cl-kernel-arg-info%s -DWITH_ONE_LANE=%d %s",
+        dev->fp32_correct_divide ? " -cl-fp32-correctly-rounded-divide-sqrt" : "", dev->one_lane, options);
     program->real_is_float = strstr(options, "-DREAL_IS_FLOAT=1");
     program->position_is_float = strstr(options, "-DPOSITION_IS_FLOAT=1");
 

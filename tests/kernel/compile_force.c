@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "batch.h"
 #include "fail.h"
 #include "features.h"
 #include "launch.h"
@@ -63,6 +64,7 @@ int main(int argc, char **argv)
     char *options = features_options(&features, is_pair ? FEATURES_PAIR : FEATURES_WALL);
     struct program *program = program_build(dev, NULL, "vectorised", options, sources);
     struct launch *launch = launch_create(program, argv[1]);
+    launch_set_batch(launch, BATCH);
     set_arguments(dev, launch, zeros);
     launch_run(launch, dev->compute, N, 0, NULL, NULL);
     device_finish(dev);

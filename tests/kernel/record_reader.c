@@ -1,8 +1,9 @@
 #include "record_reader.h"
 
 #include "fail.h"
+#include "incidence.h"
 
-enum { POSITION, DOWN_BEGIN, DOWN, UP_BEGIN, UP_COUNT, WALL_BEGIN, FORCE, TORQUE, REFERENCE, FLAGS, ORIENTATION, NOTHING, N_BUFFER };
+enum { POSITION, INCIDENCE_BEGIN, INCIDENCE, WALL_BEGIN, FORCE, TORQUE, REFERENCE, FLAGS, ORIENTATION, NOTHING, N_BUFFER };
 
 void reader_open(struct reader *r, struct device *dev, const struct features *features)
 {
@@ -24,23 +25,19 @@ void reader_close(struct reader *r)
 /* Elements 2 p and 2 p + 1 are the two ends of pair p and of nothing else; the others have one wall contact each. */
 static void set_lists(struct reader *r, int n_pair, int n_wall)
 {
-    int n = 2 * n_pair + n_wall;
-    size_t bytes = ((size_t)n + 1) * sizeof(int);
-    int *list[5];
-    for (int k = 0; k < 5; k++) list[k] = fail_alloc(bytes);
-    int *down_begin = list[0], *down = list[1], *up_begin = list[2], *up_count = list[3], *wall_begin = list[4];
-    for (int e = 0; e <= n; e++) {
-        down_begin[e] = e / 2 < n_pair ? e / 2 : n_pair;
-        down[e] = e;
-        up_begin[e] = e / 2;
-        up_count[e] = e < 2 * n_pair && e % 2 == 0;
-        wall_begin[e] = e > 2 * n_pair ? e - 2 * n_pair : 0;
+    size_t n = (size_t)(2 * n_pair + n_wall), bytes = (n + 1) * sizeof(int), n_end = 2 * (size_t)n_pair;
+    int *begin = fail_alloc(bytes), *wall_begin = fail_alloc(bytes), *incidence = fail_alloc(n_end * INCIDENCE_ALIGN * sizeof(int));
+    for (size_t e = 0; e <= n; e++) {
+        begin[e] = (int)(INCIDENCE_ALIGN * (e < n_end ? e : n_end));
+        wall_begin[e] = e > n_end ? (int)(e - n_end) : 0;
     }
-    static const char *const name[] = {"down_begin", "down", "up_begin", "up_count", "wall_begin"};
-    for (int k = 0; k < 5; k++) {
-        fixture_bind(r->dev, r->gather, &r->buffer[DOWN_BEGIN + k], name[k], bytes, list[k]);
-        free(list[k]);
-    }
+    for (size_t k = 0; k < n_end * INCIDENCE_ALIGN; k++) incidence[k] = k % INCIDENCE_ALIGN ? 2 * n_pair : (int)(k / INCIDENCE_ALIGN);
+    fixture_bind(r->dev, r->gather, &r->buffer[INCIDENCE_BEGIN], "incidence_begin", bytes, begin);
+    fixture_bind(r->dev, r->gather, &r->buffer[INCIDENCE], "incidence", n_end * INCIDENCE_ALIGN * sizeof(int), incidence);
+    fixture_bind(r->dev, r->gather, &r->buffer[WALL_BEGIN], "wall_begin", bytes, wall_begin);
+    free(begin);
+    free(wall_begin);
+    free(incidence);
 }
 
 void reader_read(struct reader *r, struct buffer *pair_result, int n_pair, struct buffer *wall_result, int n_wall, struct reading *out)

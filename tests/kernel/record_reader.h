@@ -9,7 +9,7 @@ struct reader {
     struct device *dev;
     struct program *program;
     struct launch *gather;
-    struct buffer buffer[13];
+    struct buffer buffer[11];
 };
 
 void reader_open(struct reader *r, struct device *dev, const struct features *features);
@@ -20,7 +20,8 @@ struct reading {
     real force[4], torque[4];
 };
 
-/* out [2 n_pair + n_wall]: lower (i) and higher id of each pair, then each wall contact. A buffer may be NULL where its number is 0. */
+/* out [2 n_pair + n_wall]: lower (i) and higher id of each pair, then each wall contact. A buffer may be NULL where its number is 0. The pairs' has
+ * n_pair + 1 records, the last of which is zero. */
 void reader_read(struct reader *r, struct buffer *pair_result, int n_pair, struct buffer *wall_result, int n_wall, struct reading *out);
 
 #endif

@@ -4,20 +4,21 @@
 
 #include "fail.h"
 #include "contact_memory.h"
+#include "incidence.h"
 #include "record_reader.h"
 
-enum { N = 500, N_GHOST = 20, N_PAIR = 3000, N_AT_WALL = 800, ROOM = 16 /* real per record, or more */ };
+enum { N = 500, N_GHOST = 20, N_PAIR = 3000, N_INCIDENCE = 20000, N_AT_WALL = 800, ROOM = 16 /* real per record, or more */ };
 static const double dt = 1e-3, radius = 0.01, inverse_m = 40, margin = 2e-3, gravity[3] = {0.1, -0.2, -9.81};
 static uint64_t seed = 8;
 
-enum { POSITION, DOWN_BEGIN, DOWN, UP_BEGIN, UP_COUNT, RESULT, WALL_BEGIN, WALL_RESULT, ORIENTATION, FORCE, TORQUE, REFERENCE, FLAGS, N_BUFFER };
-static const char *const buffer_name[N_BUFFER] = {"position", "down_begin", "down", "up_begin", "up_count", "result", "wall_begin", "wall_result",
-    "orientation", "force", "torque", "reference", "flags"};
+enum { POSITION, INCIDENCE_BEGIN, INCIDENCE, RESULT, WALL_BEGIN, WALL_RESULT, ORIENTATION, FORCE, TORQUE, REFERENCE, FLAGS, N_BUFFER };
+static const char *const buffer_name[N_BUFFER] = {
+    "position", "incidence_begin", "incidence", "result", "wall_begin", "wall_result", "orientation", "force", "torque", "reference", "flags"};
 
 struct test {
     struct record element[N + N_GHOST];
-    int down_begin[N + 1], down[N_PAIR], up_begin[N], up_count[N], wall_begin[N + 1], flags[2];
-    real result[N_PAIR][ROOM], wall_result[N_AT_WALL][ROOM], orientation[N][4], force[N][4], torque[N][4];
+    int incidence_begin[N + 1], incidence[N_INCIDENCE], wall_begin[N + 1], flags[2];
+    real result[N_PAIR + 1][RESULT_WIDTH], wall_result[N_AT_WALL][ROOM], orientation[N][4], force[N][4], torque[N][4];
     preal reference[N][4];
     struct buffer buffer[N_BUFFER];
 };
@@ -55,23 +56,21 @@ static void set_element(struct test *t, int e)
 #endif
 }
 
-/* Lists: the pairs' up runs one after the other, down entries anywhere; one element has hundreds, some have none. */
+/* Rows of any pairs, from either end; one element has hundreds, some have none, some just fill their eights. */
 static void set_lists(struct test *t)
 {
-    int up = 0, down = 0, wall = 0;
+    int at = 0, wall = 0;
     for (int e = 0; e < N; e++) {
-        t->up_begin[e] = up;
-        t->up_count[e] = e == 7 ? 300 : (int)scratch_random(&seed, 0, 8);
-        if (up + t->up_count[e] > N_PAIR) t->up_count[e] = N_PAIR - up;
-        up += t->up_count[e];
-        t->down_begin[e] = down;
-        for (int k = e == 9 ? 300 : (int)scratch_random(&seed, 0, 8); k > 0 && down < N_PAIR; k--)
-            t->down[down++] = (int)scratch_random(&seed, 0, N_PAIR);
+        t->incidence_begin[e] = at;
+        for (int k = e == 7 ? 299 : e == 9 ? 304 : (int)scratch_random(&seed, 0, 20); k > 0; k--)
+            t->incidence[at++] = (int)scratch_random(&seed, 0, 2 * N_PAIR);
+        while (at % INCIDENCE_ALIGN) t->incidence[at++] = 2 * N_PAIR;
+        assert_true(at <= N_INCIDENCE);
         t->wall_begin[e] = wall;
         wall += (int)scratch_random(&seed, 0, 3);
         if (wall > N_AT_WALL) wall = N_AT_WALL;
     }
-    t->down_begin[N] = down;
+    t->incidence_begin[N] = at;
     t->wall_begin[N] = wall;
 }
 
@@ -81,7 +80,7 @@ static struct test *make(void)
     for (int e = 0; e < N + N_GHOST; e++) set_element(t, e);
     set_lists(t);
     for (int p = 0; p < N_PAIR; p++)
-        for (int c = 0; c < ROOM; c++) t->result[p][c] = spread();
+        for (int c = 0; c < RESULT_WIDTH; c++) t->result[p][c] = spread(); /* but the blank one */
     for (int k = 0; k < N_AT_WALL; k++)
         for (int c = 0; c < ROOM; c++) t->wall_result[k][c] = spread();
     for (int e = 0; e < N; e++) {
@@ -102,10 +101,10 @@ static void to_device(struct test *t)
     const struct {
         size_t bytes;
         void *data;
-    } array[N_BUFFER] = {{sizeof t->element, t->element}, {sizeof t->down_begin, t->down_begin}, {sizeof t->down, t->down},
-        {sizeof t->up_begin, t->up_begin}, {sizeof t->up_count, t->up_count}, {sizeof t->result, t->result}, {sizeof t->wall_begin, t->wall_begin},
-        {sizeof t->wall_result, t->wall_result}, {sizeof t->orientation, t->orientation}, {sizeof t->force, NULL}, {sizeof t->torque, NULL},
-        {sizeof t->reference, t->reference}, {sizeof t->flags, t->flags}};
+    } array[N_BUFFER] = {{sizeof t->element, t->element}, {sizeof t->incidence_begin, t->incidence_begin}, {sizeof t->incidence, t->incidence},
+        {sizeof t->result, t->result}, {sizeof t->wall_begin, t->wall_begin}, {sizeof t->wall_result, t->wall_result},
+        {sizeof t->orientation, t->orientation}, {sizeof t->force, NULL}, {sizeof t->torque, NULL}, {sizeof t->reference, t->reference},
+        {sizeof t->flags, t->flags}};
     struct launch *both[] = {gather, kick_drift};
     for (int b = 0; b < N_BUFFER; b++) {
         fixture_buffer(dev, &t->buffer[b], buffer_name[b], array[b].bytes, array[b].data);
@@ -165,12 +164,12 @@ static void add(real f[3], real torque[3], const struct reading *r)
     }
 }
 
-/* Force and torque of element e: pairs in which it is the higher id, those in which it is the lower, walls; each in the order of its list. */
+/* Force and torque of element e: pairs, walls; each in the order of its list. */
 static void sums_of(int e, real f[3], real torque[3])
 {
     for (int a = 0; a < 3; a++) f[a] = torque[a] = 0;
-    for (int k = start->down_begin[e]; k < start->down_begin[e + 1]; k++) add(f, torque, &reading[2 * start->down[k] + 1]);
-    for (int p = start->up_begin[e]; p < start->up_begin[e] + start->up_count[e]; p++) add(f, torque, &reading[2 * p]);
+    for (int k = start->incidence_begin[e]; k < start->incidence_begin[e + 1]; k++)
+        if (start->incidence[k] < 2 * N_PAIR) add(f, torque, &reading[start->incidence[k]]);
     for (int k = start->wall_begin[e]; k < start->wall_begin[e + 1] && WITH_WALLS; k++) add(f, torque, &reading[2 * N_PAIR + k]);
 }
 

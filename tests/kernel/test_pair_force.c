@@ -1,5 +1,5 @@
 /* pair_force against contact_law on the host, bit for bit, over several steps: pairs that touch, part, are bonded, are far from each other or
- * coincide.
+ * coincide; in both ways of going over a batch.
  * Compiled once for each set of features and each precision, see meson.build. */
 #include "contact_scene.h"
 #include "fail.h"
@@ -122,7 +122,7 @@ static void set_arguments(struct test *t)
     fixture_bind(dev, k, &t->buffer[4], "history", sizeof t->history, t->history);
     fixture_bind(dev, k, &t->buffer[5], "ledger", sizeof t->ledger, t->ledger);
     fixture_bind(dev, k, &t->buffer[6], "table", sizeof table, table);
-    fixture_bind(dev, k, &t->buffer[7], "result", RESULT_WIDTH * CAPACITY * sizeof(real), NULL);
+    fixture_bind(dev, k, &t->buffer[7], "result", RESULT_WIDTH * (CAPACITY + 1) * sizeof(real), NULL);
     launch_set_int(k, "capacity", CAPACITY);
     launch_set_int_if(k, "n_material", N_MATERIAL);
     for (int a = 0; a < 3; a++) launch_set_real_if(k, axis[a], period[a]);
@@ -177,7 +177,8 @@ static void run(struct test *t, real *result)
 {
     static const int range[2][2] = {{0, N_INTERIOR}, {FIRST_BOUNDARY, N_PAIR}};
     memset(result, 0x5a, RESULT_WIDTH * CAPACITY * sizeof *result);
-    buffer_write(t->dev, &t->buffer[7], 0, RESULT_WIDTH * CAPACITY * sizeof *result, result);
+    memset(result + RESULT_WIDTH * CAPACITY, 0, RESULT_WIDTH * sizeof *result); /* for the reader */
+    buffer_write(t->dev, &t->buffer[7], 0, RESULT_WIDTH * (CAPACITY + 1) * sizeof *result, result);
     buffer_write(t->dev, &t->buffer[0], 0, sizeof t->element, t->element);
     for (int k = 0; k < 2; k++) {
         launch_set_int(t->launch, "first", range[k][0]);
@@ -196,7 +197,7 @@ static void check_gap(const real *result, int p)
 
 static void check_step(struct test *t)
 {
-    static real result[RESULT_WIDTH * CAPACITY], history[(HISTORY_WIDTH + 1) * CAPACITY];
+    static real result[RESULT_WIDTH * (CAPACITY + 1)], history[(HISTORY_WIDTH + 1) * CAPACITY];
     static double ledger[LEDGER_WIDTH * CAPACITY];
     static int state[CAPACITY];
     static struct reading reading[2 * CAPACITY];
@@ -239,15 +240,16 @@ static void move(struct test *t)
         }
 }
 
-static void same_bits_as_the_law(void **unused)
+static void check_law(bool one_lane)
 {
     static const char *const sources[] = {"pair_force.cl", NULL};
-    (void)unused;
     struct features features = fixture_features();
     struct test *t = fail_alloc(sizeof *t);
     t->dev = fixture_device();
+    t->dev->one_lane = one_lane;
     struct program *program = fixture_program(t->dev, &features, FEATURES_PAIR, sources);
     t->launch = launch_create(program, "pair_force");
+    launch_set_batch(t->launch, BATCH);
     reader_open(&t->reader, t->dev, &features);
     set_state(t);
     set_arguments(t);
@@ -265,8 +267,20 @@ static void same_bits_as_the_law(void **unused)
     free(t);
 }
 
+static void batch_by_one_lane(void **unused)
+{
+    (void)unused;
+    check_law(true);
+}
+
+static void batch_by_many_lanes(void **unused)
+{
+    (void)unused;
+    check_law(false);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(same_bits_as_the_law)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(batch_by_one_lane), cmocka_unit_test(batch_by_many_lanes)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,6 +3,7 @@
 #include "lists_fixture.h"
 
 #include "fail.h"
+#include "incidence.h"
 
 static struct lists lists;
 static uint64_t seed = 12;
@@ -117,29 +118,47 @@ static void check_pairs(const struct crowd *c, int64_t n_row)
     free(count);
 }
 
-/* The down entries of an element: its pairs with lower ones, all of them, ascending by their gid. With the up run behind them that is the order of
- * its sum. */
+/* The record of the blank pair is zero. */
+static void check_blank(int64_t pair)
+{
+    size_t bytes = (size_t)lists.pairs->layout.result * sizeof(real);
+    unsigned char *record = fail_alloc(bytes);
+    memset(record, 0x5a, bytes);
+    buffer_read(lists.dev, &lists.pairs->result, (size_t)pair * bytes, bytes, record);
+    for (size_t k = 0; k < bytes; k++) assert_int_equal(record[k], 0);
+    free(record);
+}
+
+/* The gather's row of an element: its pairs, all of them, ascending by the gid of the partner, then blanks. */
 static void check_links(const struct crowd *c)
 {
     const struct pair_list *l = &lists.pairs->now;
     int64_t end = l->first_boundary + l->n_boundary;
     int *i = lists_ints(&lists, &l->pair_i, end), *j = lists_ints(&lists, &l->pair_j, end);
-    int *begin = lists_ints(&lists, &l->down_begin, c->n_owned + 1), *down = lists_ints(&lists, &l->down, l->n_down);
-    assert_int_equal(begin[c->n_owned], l->n_down);
+    int *begin = lists_ints(&lists, &l->incidence_begin, c->n_owned + 1), *incidence = lists_ints(&lists, &l->incidence, l->n_incidence);
+    assert_int_equal(begin[c->n_owned], l->n_incidence);
     for (int e = 0; e < c->n_owned; e++) {
-        int n_lower = 0;
-        for (int b = 0; b < c->n_all; b++) n_lower += c->gid[b] < c->gid[e] && crowd_meet(c, e, b);
-        assert_int_equal(begin[e + 1] - begin[e], n_lower);
-        for (int k = begin[e]; k < begin[e + 1]; k++) {
-            assert_in_range(down[k], 0, end - 1);
-            assert_true(j[down[k]] == e && c->gid[i[down[k]]] < c->gid[e]);
-            assert_true(k == begin[e] || c->gid[i[down[k - 1]]] < c->gid[i[down[k]]]);
+        int n = 0, n_padded = begin[e + 1] - begin[e];
+        int64_t before = -1;
+        for (int b = 0; b < c->n_all; b++) n += b != e && crowd_meet(c, e, b);
+        assert_true(n_padded % INCIDENCE_ALIGN == 0 && n_padded >= n && n_padded < n + INCIDENCE_ALIGN);
+        for (int k = 0; k < n_padded; k++) {
+            int pair = incidence[begin[e] + k] / 2, is_down = incidence[begin[e] + k] % 2;
+            if (k >= n) {
+                assert_int_equal(incidence[begin[e] + k], 2 * (l->capacity - 1));
+                continue;
+            }
+            assert_in_range(pair, 0, end - 1);
+            int partner = is_down ? i[pair] : j[pair];
+            assert_true((is_down ? j[pair] : i[pair]) == e && c->gid[partner] > before);
+            before = c->gid[partner];
         }
     }
+    check_blank(l->capacity - 1);
     free(i);
     free(j);
     free(begin);
-    free(down);
+    free(incidence);
 }
 
 static void check(struct crowd c, int64_t least)

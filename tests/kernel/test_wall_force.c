@@ -268,15 +268,16 @@ static void move(struct test *t)
         for (int a = 0; a < 3; a++) t->pose[w][9 + a] += (preal)STEP * t->pose[w][12 + a];
 }
 
-static void same_bits_as_the_law(void **unused)
+static void check_law(bool one_lane)
 {
     static const char *const sources[] = {"wall_force.cl", NULL};
-    (void)unused;
     struct features features = fixture_features();
     struct test *t = fail_alloc(sizeof *t);
     t->dev = fixture_device();
+    t->dev->one_lane = one_lane;
     struct program *program = fixture_program(t->dev, &features, FEATURES_WALL, sources);
     t->launch = launch_create(program, "wall_force");
+    launch_set_batch(t->launch, BATCH);
     reader_open(&t->reader, t->dev, &features);
     set_state(t);
     set_arguments(t);
@@ -294,8 +295,20 @@ static void same_bits_as_the_law(void **unused)
     free(t);
 }
 
+static void batch_by_one_lane(void **unused)
+{
+    (void)unused;
+    check_law(true);
+}
+
+static void batch_by_many_lanes(void **unused)
+{
+    (void)unused;
+    check_law(false);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(same_bits_as_the_law)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(batch_by_one_lane), cmocka_unit_test(batch_by_many_lanes)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
