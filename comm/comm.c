@@ -1,11 +1,12 @@
 #include "comm.h"
 
-#include <sched.h>
 #include <assert.h>
 #include <limits.h>
+#include <sched.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "../src/fail.h"
 
@@ -14,12 +15,16 @@
  * io: OMPIO of Open MPI up to 4.1.6 silently corrupts parallel HDF5 files (ompi #12718), and Debian 12 takes it by default: ROMIO instead.
  * hwloc: MPI_Init of a rank without mpirun looks for OpenCL devices by itself if hwloc's plugins are there, and pocl then starts its threads before
  * device.c has said how many.
- * mpi_yield_when_idle: a rank's OpenCL workers often share its core (mpirun binds to one), so a rank that waits has to let them run. */
+ * mpi_yield_when_idle: a rank's OpenCL workers often share its core (mpirun binds to one), so a rank that waits has to let them run.
+ * eager_limit: a message above it takes several looks of both ranks, and they look rarely while their device computes on the same cores; ghosts of
+ * one neighbour are some 100 KB. (vader is the shared-memory transport of Open MPI 4, sm that of 5.) */
 static void environment(void)
 {
     setenv("OMPI_MCA_io", "^ompio", 0);
     setenv("HWLOC_COMPONENTS", "-opencl", 0);
     setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0);
+    setenv("OMPI_MCA_btl_vader_eager_limit", "262144", 0);
+    setenv("OMPI_MCA_btl_sm_eager_limit", "262144", 0);
 }
 
 static void warn_of_ompio(void)
@@ -143,13 +148,25 @@ void comm_vote_begin(const struct comm *comm, struct comm_vote *vote, int32_t va
     if (comm->n_rank > 1) check_mpi(MPI_Iallreduce(&vote->mine, &vote->all, 1, MPI_INT32_T, MPI_BOR, comm->world, &vote->request));
 }
 
-int32_t comm_vote_end(struct comm_vote *vote)
+void comm_set_naps(struct comm *comm, bool naps)
+{
+    comm->naps = naps;
+}
+
+void comm_pause(const struct comm *comm)
+{
+    const struct timespec nap = {0, 5000}; /* s, ns */
+    if (comm->naps) nanosleep(&nap, NULL);
+    else sched_yield();
+}
+
+int32_t comm_vote_end(const struct comm *comm, struct comm_vote *vote)
 {
     if (!vote->open) return 0;
     int done = vote->request == MPI_REQUEST_NULL;
     while (!done) {
         check_mpi(MPI_Test(&vote->request, &done, MPI_STATUS_IGNORE));
-        if (!done) sched_yield();
+        if (!done) comm_pause(comm);
     }
     vote->open = false;
     return vote->all;

@@ -13,6 +13,7 @@ struct comm {
     MPI_Comm node;  /* ranks that share this node's memory, owned */
     int rank, n_rank;
     int node_rank, n_node_rank;
+    bool naps; /* comm_pause sleeps: the device computes on this thread's core */
 };
 
 /* MPI_Init (with OMPIO switched off, see comm.c) and MPI_Finalize. Collective. Once per process. Only the calling thread may use comm/ afterwards. */
@@ -33,6 +34,11 @@ void comm_barrier(const struct comm *comm);
 void comm_node_barrier(const struct comm *comm);
 void comm_node_or(const struct comm *comm, void *bits, size_t bytes); /* bit-or over the ranks of this node, in place */
 
+/* Between two looks at whether something has arrived: sleeps for some microseconds where `naps`, else lets others run who wait for this core. */
+void comm_pause(const struct comm *comm);
+/* Whether comm_pause sleeps from now on. */
+void comm_set_naps(struct comm *comm, bool naps);
+
 /* One bit-or of an int over all ranks that runs beside other work: started now, asked for later. */
 struct comm_vote {
     MPI_Request request;
@@ -40,7 +46,7 @@ struct comm_vote {
     bool open;
 };
 void comm_vote_begin(const struct comm *comm, struct comm_vote *vote, int32_t value); /* collective */
-int32_t comm_vote_end(struct comm_vote *vote);                                        /* waits; 0 if none was begun */
+int32_t comm_vote_end(const struct comm *comm, struct comm_vote *vote);               /* waits; 0 if none was begun */
 
 /* Prints `rank R: file:line: call: name of the MPI error` and stops the job, exit code 6. */
 #define check_mpi(call) comm_check((call), #call, __FILE__, __LINE__)

@@ -30,7 +30,7 @@ void halo_exchange(struct halo *halo, const void *send, void *recv, size_t recor
 /* Persistent requests over fixed buffers for the exchange within a step. The buffers are borrowed until the next bind or free. */
 void halo_bind(struct halo *halo, const void *send, void *recv, size_t record);
 /* Order of calls in a step: begin_recv, (send buffer filled), begin_send, poll until it returns true, (recv buffer read), end.
- * `poll` also drives MPI's progress and may be called at any time; it never blocks, so who waits with it calls sched_yield in between (ranks and
+ * `poll` also drives MPI's progress and may be called at any time; it never blocks, so who waits with it calls comm_pause in between (ranks and
  * their device's workers may share a core); `end` completes the sends, so that the send buffer may be refilled. */
 void halo_begin_recv(struct halo *halo);
 void halo_begin_send(struct halo *halo);

@@ -1,7 +1,6 @@
 #include "ghosts.h"
 
 #include <math.h>
-#include <sched.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -192,10 +191,15 @@ void ghosts_begin(struct device *dev, struct ghosts *g, const struct particles *
     launch_bind_buffer(g->gather, "from", &p->field[FIELD_STATE].now);
     launch_run(g->gather, dev->compute, g->n_send, 0, NULL, &g->packed_event);
     check_cl(clFlush(dev->compute));
-    buffer_read_begin(dev, dev->copy, &g->packed, 0, (size_t)g->n_send * g->record, g->send_staging.host, 1, &g->packed_event, &g->read_event);
-    check_cl(clFlush(dev->copy));
     release(&g->written_event); /* long done: the receive staging is free */
     halo_begin_recv(g->halo);
+}
+
+void ghosts_read(struct device *dev, struct ghosts *g)
+{
+    if (g->comm->n_rank == 1) return;
+    buffer_read_begin(dev, dev->copy, &g->packed, 0, (size_t)g->n_send * g->record, g->send_staging.host, 1, &g->packed_event, &g->read_event);
+    check_cl(clFlush(dev->copy));
 }
 
 /* Until the packed records are on the host. On a CPU the host thread sleeps, for the device computes on the same cores; elsewhere it drives MPI, and
@@ -206,18 +210,20 @@ static void wait_packed(struct device *dev, struct ghosts *g)
     if (dev->type & CL_DEVICE_TYPE_CPU) check_cl(clWaitForEvents(1, &g->read_event));
     while (!device_event_done(g->read_event)) {
         halo_poll(g->halo);
-        sched_yield();
+        comm_pause(g->comm);
     }
 }
 
-const cl_event *ghosts_swap(struct device *dev, struct ghosts *g, struct particles *p, struct timers *timers)
+const cl_event *ghosts_swap(struct device *dev, struct ghosts *g, struct particles *p, cl_event *most, struct timers *timers)
 {
     if (g->comm->n_rank == 1) return NULL;
     wait_packed(dev, g);
-    timer_begin(timers, TIMER_EXCHANGE);
     halo_begin_send(g->halo);
+    if (dev->type & CL_DEVICE_TYPE_CPU) check_cl(clWaitForEvents(1, most));
+    check_cl(clReleaseEvent(*most));
+    timer_begin(timers, TIMER_EXCHANGE);
     timer_begin(timers, TIMER_WAIT);
-    while (!halo_poll(g->halo)) sched_yield();
+    while (!halo_poll(g->halo)) comm_pause(g->comm);
     timer_end(timers, TIMER_WAIT);
     buffer_write_begin(dev, dev->copy, &p->field[FIELD_STATE].now, (size_t)p->n_owned * g->record, (size_t)g->n_recv * g->record,
         g->recv_staging.host, 0, NULL, &g->written_event);

@@ -8,9 +8,6 @@
 #include "fail.h"
 #include "output.h"
 
-/* The limit of the time step costs as much as several steps: looked at after list builds, but not after each. */
-enum { LIMIT_EVERY = 500 };
-
 /* Skin of slow elements, as a share of the mean radius; fast ones get `horizon` of their own motion on top. Wider skins mean more listed pairs,
  * narrower
  * ones more builds. The skin follows the interval between builds, by rules of steps alone, so that it is the same on any number of ranks. */
@@ -130,7 +127,7 @@ void particle_build(struct sim *s)
     cells_sort(dev, s->cells, s->scan, p, p->n_owned + p->n_ghost, &all);
     pairs_build(dev, s->pairs, s->cells, s->scan, p);
     if (s->wall_contacts) wall_contacts_build(dev, s->wall_contacts, s->scan, p, s->step, (int)ceil(s->horizon / s->dt), s->box, s->box + 3);
-    watch_reset(dev, &s->watch, &p->flags);
+    watch_reset(dev, &s->watch, s->comm, &p->flags);
     s->built_at = s->step;
     int64_t work = s->pairs->now.n_interior + s->pairs->now.n_boundary + p->n_owned;
     s->imbalance_now = partition_imbalance(s->comm, work);
@@ -158,5 +155,4 @@ void particle_regroup(struct sim *s)
     if (s->wall_contacts) wall_contacts_carry(s->dev, s->wall_contacts, &s->owners->old_index);
     particle_bind(s);
     s->n_rebuild++;
-    if (s->step - s->limit_at >= LIMIT_EVERY) output_check_limit(s);
 }

@@ -6,15 +6,26 @@
  *   gather           sum in fixed order, kick; unless the step is observed also the next kick and drift, to t^{n+1} */
 #include "particle.h"
 
+#include "../kernels/batch.h"
 #include "output.h"
 #include "signals.h"
 
-static void launch_pairs(struct sim *s, int64_t first, int64_t n, const cl_event *wait)
+static void launch_pairs(struct sim *s, int64_t first, int64_t n, const cl_event *wait, cl_event *done)
 {
-    if (n == 0) return;
-    launch_set_int(s->pair_force, "first", (int)first);
-    launch_set_int(s->pair_force, "end", (int)(first + n));
-    launch_run(s->pair_force, s->dev->compute, n, wait ? 1 : 0, wait, NULL);
+    if (n > 0) {
+        launch_set_int(s->pair_force, "first", (int)first);
+        launch_set_int(s->pair_force, "end", (int)(first + n));
+    }
+    if (n > 0 || done) launch_run(s->pair_force, s->dev->compute, n, wait ? 1 : 0, wait, done);
+}
+
+/* Interior pairs. With ghosts to come, `most` is the event of their larger part: when it is over the host has time to pass the ghosts on, while the
+ * device does the rest. */
+static void launch_interior(struct sim *s, cl_event *most)
+{
+    int64_t n = s->pairs->now.n_interior, n_first = s->comm->n_rank > 1 ? n * 3 / 4 / BATCH * BATCH : n;
+    launch_pairs(s, 0, n_first, NULL, s->comm->n_rank > 1 ? most : NULL);
+    launch_pairs(s, n_first, n - n_first, NULL, NULL);
 }
 
 static void launch_walls(struct sim *s)
@@ -29,30 +40,39 @@ static void launch_walls(struct sim *s)
 void particle_forces(struct sim *s)
 {
     const struct pair_list *l = &s->pairs->now;
+    cl_event most = NULL;
     if (s->wall_contacts) wall_contacts_set_step(s->dev, s->wall_contacts, s->step);
     timer_begin(&s->timers, TIMER_EXCHANGE);
     ghosts_begin(s->dev, s->ghosts, s->particles);
     timer_end(&s->timers, TIMER_EXCHANGE);
-    launch_pairs(s, 0, l->n_interior, NULL);
+    launch_interior(s, &most);
     launch_walls(s);
     device_flush(s->dev);
-    const cl_event *arrived = ghosts_swap(s->dev, s->ghosts, s->particles, &s->timers);
-    launch_pairs(s, l->first_boundary, l->n_boundary, arrived);
+    ghosts_read(s->dev, s->ghosts);
+    const cl_event *arrived = ghosts_swap(s->dev, s->ghosts, s->particles, &most, &s->timers);
+    launch_pairs(s, l->first_boundary, l->n_boundary, arrived, NULL);
+}
+
+/* After the drift to the next step. */
+static void read_flags(struct sim *s)
+{
+    if (watch_due(s->step + 1)) watch_read(s->dev, &s->watch, &s->particles->flags);
+    else device_flush(s->dev);
 }
 
 static void advance(struct sim *s, bool observe)
 {
     particle_forces(s);
-    watch_vote(&s->watch, s->comm, output_stop_wanted(s) ? WATCH_STOP : 0);
+    if (watch_due(s->step)) watch_vote(&s->watch, s->comm, output_stop_wanted(s) ? WATCH_STOP : 0);
     launch_set_int(s->gather, "observe", observe);
     launch_run(s->gather, s->dev->compute, s->particles->n_owned, 0, NULL, NULL);
-    if (!observe) watch_read(s->dev, &s->watch, &s->particles->flags);
+    if (!observe) read_flags(s);
 }
 
 static void resume(struct sim *s)
 {
     launch_run(s->kick_drift, s->dev->compute, s->particles->n_owned, 0, NULL, NULL);
-    watch_read(s->dev, &s->watch, &s->particles->flags);
+    read_flags(s);
 }
 
 static bool stale(struct sim *s)

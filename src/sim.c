@@ -11,6 +11,10 @@
 #include "particle.h"
 #include "scene_report.h"
 #include "signals.h"
+#include "wake.h"
+
+/* Steps between two looks at the limit of the time step, which cost as much as several steps. */
+enum { LIMIT_EVERY = 500 };
 
 /* Box of the domain: as given, else around elements and walls with room beyond, so that what falls out of sight is out of it. */
 static void set_domain(struct sim *s)
@@ -74,6 +78,14 @@ static void print_memory(struct sim *s)
         mine / (double)(s->particles->n_owned > 0 ? s->particles->n_owned : 1));
 }
 
+/* Where device and host compute on the same cores, the host sleeps while it waits. After the device has been opened and has its threads. */
+static void share_cores(struct sim *s)
+{
+    if (!(s->dev->type & CL_DEVICE_TYPE_CPU) || s->comm->n_rank == 1) return;
+    comm_set_naps(s->comm, true);
+    wake_at_once();
+}
+
 struct sim *sim_create(struct scene *scene, struct comm *comm, struct log *log, const struct sim_options *options)
 {
     struct sim *s = fail_alloc(sizeof *s);
@@ -88,6 +100,7 @@ struct sim *sim_create(struct scene *scene, struct comm *comm, struct log *log, 
     set_domain(s);
     set_step(s);
     s->dev = device_open(comm, options->device, !s->features.real_is_float || !s->features.position_is_float, options->profile);
+    share_cores(s);
     s->output = output_create(s);
     s->dev->dump_dir = options->dir;
     s->ops = &particle_ops;
@@ -115,7 +128,7 @@ static void progress(struct sim *s, bool end)
 /* Lists, lost elements and requests, as agreed beside the step before. Returns whether this step is to be the last. */
 static bool look_around(struct sim *s)
 {
-    int32_t agreed = watch_agreed(&s->watch);
+    int32_t agreed = watch_agreed(&s->watch, s->comm);
     if (agreed & WATCH_LOST) output_stop_numerics(s, "positions or velocities are not numbers any more");
     if (agreed & WATCH_STALE || s->ops->stale(s)) {
         timer_begin(&s->timers, TIMER_REGROUP);
@@ -123,6 +136,7 @@ static bool look_around(struct sim *s)
         signals_keep(); /* kernels that ran for the first time may have been compiled */
         timer_end(&s->timers, TIMER_REGROUP);
     }
+    if (s->step - s->limit_at >= LIMIT_EVERY) output_check_limit(s);
     return (agreed & WATCH_STOP) != 0;
 }
 
@@ -148,7 +162,7 @@ int sim_run(struct sim *s)
     output_write(s, s->n_step == 0);
     while (s->step < s->n_step && !stop) {
         const struct device_counters before = s->dev->counters;
-        int64_t n_rebuild = s->n_rebuild;
+        int64_t n_rebuild = s->n_rebuild, limit_at = s->limit_at;
         bool plain = s->step > 0 && !s->observed;
         if (!plain) s->ops->resume(s);
         s->step++;
@@ -156,7 +170,7 @@ int sim_run(struct sim *s)
         s->observed = output_due(s, s->step) || s->step == s->n_step || stop;
         s->ops->advance(s, s->observed);
         s->element_steps += (double)s->particles->n_global;
-        if (plain && !s->observed && s->n_rebuild == n_rebuild) count_plain(s, &before);
+        if (plain && !s->observed && s->n_rebuild == n_rebuild && s->limit_at == limit_at) count_plain(s, &before);
         if (s->observed) output_write(s, stop || s->step == s->n_step);
         progress(s, false);
     }

@@ -68,7 +68,7 @@ struct sim {
     struct energy *energy;
     struct energy_sums energy_start;
     double element_steps;         /* elements times steps so far */
-    struct device_counters plain; /* what the plain steps added: those without regroup, observation or the step after one */
+    struct device_counters plain; /* what the plain steps added: those without regroup, look at the limit, observation or the step after one */
     int64_t n_plain;
     int64_t halo_bytes; /* sent by all ranks */
     double started;     /* timer_now at the start */

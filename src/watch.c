@@ -24,14 +24,14 @@ void watch_vote(struct watch *w, const struct comm *comm, int32_t own)
     comm_vote_begin(comm, &w->vote, own);
 }
 
-int32_t watch_agreed(struct watch *w)
+int32_t watch_agreed(struct watch *w, const struct comm *comm)
 {
-    return comm_vote_end(&w->vote);
+    return comm_vote_end(comm, &w->vote);
 }
 
-void watch_reset(struct device *dev, struct watch *w, struct buffer *flags)
+void watch_reset(struct device *dev, struct watch *w, const struct comm *comm, struct buffer *flags)
 {
     wait_read(w);
-    comm_vote_end(&w->vote);
+    comm_vote_end(comm, &w->vote);
     buffer_zero(dev, flags);
 }
