@@ -50,6 +50,7 @@ static void allocate(struct device *dev, struct buffer *buffer, size_t bytes, cl
     buffer->serial = ++c->n_alloc;
     c->now_bytes += (int64_t)capacity;
     if (c->now_bytes > c->peak_bytes) c->peak_bytes = c->now_bytes;
+    memory_table_add(&dev->memory, buffer->name, (int64_t)capacity);
 }
 
 /* 0, or all bits set where a test looks for reads of what was never written. */
@@ -93,6 +94,7 @@ void buffer_free(struct device *dev, struct buffer *buffer)
         }
         check_cl(clReleaseMemObject(buffer->mem));
         dev->counters.now_bytes -= (int64_t)buffer->capacity;
+        memory_table_add(&dev->memory, buffer->name, -(int64_t)buffer->capacity);
     }
     buffer_init(buffer, buffer->name);
 }

@@ -12,6 +12,7 @@
 #include <stdio.h>
 
 #include "../comm/comm.h"
+#include "memory_table.h"
 
 enum { DEVICE_TEXT = 256 };
 
@@ -48,6 +49,7 @@ struct device {
     int n_share;          /* ranks of this node that share this rank's memory: n_node_rank for CPUs, an estimate for GPUs */
     const char *dump_dir; /* where the source of a kernel that does not build is written; NULL: $TMPDIR or /tmp. Borrowed */
     struct device_counters counters;
+    struct memory_table memory;
 };
 
 /* Collective. `choice`: NULL, or "PLATFORM:DEVICE" where each part is an index, a part of the name (or of the platform's version: "pocl") in any

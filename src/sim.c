@@ -71,11 +71,20 @@ static void print_warnings(struct sim *s)
     scene_errors_free(&warnings);
 }
 
+/* The larger arrays, and what the others take together. */
 static void print_memory(struct sim *s)
 {
-    double mine = (double)s->dev->counters.now_bytes;
-    log_print(s->log, "device memory on rank 0: %.1f MiB, %.0f bytes per element", mine / 1048576,
-        mine / (double)(s->particles->n_owned > 0 ? s->particles->n_owned : 1));
+    struct memory_table table = s->dev->memory;
+    double all = (double)s->dev->counters.now_bytes, rest = all, n = (double)(s->particles->n_owned > 0 ? s->particles->n_owned : 1);
+    memory_table_sort(&table);
+    log_print(s->log, "device memory on rank 0: %.1f MiB, %.0f bytes per element", all / 1048576, all / n);
+    log_print(s->log, "    %-24s %12s %18s", "array", "KiB", "bytes per element");
+    for (int i = 0; i < table.n && (double)table.row[i].bytes > 0.02 * all; i++) {
+        double bytes = (double)table.row[i].bytes;
+        log_print(s->log, "    %-24s %12.1f %18.1f", table.row[i].name, bytes / 1024, bytes / n);
+        rest -= bytes;
+    }
+    log_print(s->log, "    %-24s %12.1f %18.1f", "all others", rest / 1024, rest / n);
 }
 
 /* Where device and host compute on the same cores, the host sleeps while it waits. After the device has been opened and has its threads. */
@@ -171,7 +180,10 @@ int sim_run(struct sim *s)
         s->ops->advance(s, s->observed);
         s->element_steps += (double)s->particles->n_global;
         if (plain && !s->observed && s->n_rebuild == n_rebuild && s->limit_at == limit_at) count_plain(s, &before);
-        if (s->observed) output_write(s, stop || s->step == s->n_step);
+        if (s->observed) {
+            device_finish(s->dev); /* what the steps took is theirs, not the output's */
+            output_write(s, stop || s->step == s->n_step);
+        }
         progress(s, false);
     }
     device_finish(s->dev);
