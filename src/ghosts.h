@@ -37,8 +37,8 @@ void ghosts_begin(struct device *dev, struct ghosts *g, const struct particles *
 /* Enqueues its read-back: after the interior kernels, since pocl, which has one worker for kernels and copies, begins with what waited last. */
 void ghosts_read(struct device *dev, struct ghosts *g);
 /* Sends, waits for arrivals, enqueues their copy to the device. `most`: of the kernels that run meanwhile, an event shortly before their end,
- * released here: a host whose device computes on the same cores sleeps until then, instead of taking time from it by looking. `arrived` is the event that kernels on ghosts have to wait for (borrowed), NULL
- * if there is nothing to wait for. */
+ * released here: a host whose device computes on the same cores sleeps until then, instead of taking time from it by looking. Returns the event that
+ * kernels on ghosts have to wait for (borrowed), NULL if there is nothing to wait for. */
 const cl_event *ghosts_swap(struct device *dev, struct ghosts *g, struct particles *p, cl_event *most, struct timers *timers);
 /* Bytes that this rank has sent within steps since the start. */
 int64_t ghosts_bytes_sent(const struct ghosts *g);

@@ -13,6 +13,16 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+/* MPI says "input/output error" where the system said more: ": File too large", if its number is still there and one that tells of a place where no
+ * more can be written; else nothing. */
+static const char *system_reason(int number)
+{
+    static char text[64];
+    bool is_known = number == EFBIG || number == ENOSPC || number == EDQUOT || number == EROFS;
+    snprintf(text, sizeof text, "%s%s", is_known ? ": " : "", is_known ? strerror(number) : "");
+    return text;
+}
+
 /* Ends the job if a call of HDF5 failed on this rank.
  *
  * At once and without asking the others: a rank whose MPI_File_write_at_all failed leaves out the collective calls that follow it inside
@@ -20,13 +30,14 @@
  * fail together, the higher ones hold their tongue until the lowest has ended them. */
 static void insist(const struct h5_writer *writer, bool ok, const char *call, const char *name)
 {
+    int number = errno;
     if (ok) return;
-    const char *reason = h5_check_error(); /* before any other call of HDF5, which would forget it */
+    const char *system = system_reason(number), *reason = h5_check_error(); /* before any other call of HDF5, which would forget it */
     struct statvfs disk;
     double free_bytes = statvfs(writer->tmp, &disk) == 0 ? (double)disk.f_bavail * (double)disk.f_frsize : (double)NAN;
     usleep(200000U * (unsigned)(writer->comm->rank < 10 ? writer->comm->rank : 10));
     unlink(writer->tmp);
-    fail_stop(EXIT_IO, "cannot write '%s': %s%s: %s (%.1f MB are free there)", writer->path, call, name, reason, 1e-6 * free_bytes);
+    fail_stop(EXIT_IO, "cannot write '%s': %s%s: %s%s (%.1f MB are free there)", writer->path, call, name, reason, system, 1e-6 * free_bytes);
 }
 
 /* Outside of HDF5 rank 0 acts alone; its error text (empty: none) decides for all. */

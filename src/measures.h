@@ -2,7 +2,6 @@
 #ifndef DEMOCLES_MEASURES_H
 #define DEMOCLES_MEASURES_H
 
-#include "energy.h"
 #include "series.h"
 #include "sim.h"
 
@@ -15,7 +14,4 @@ int64_t measures_every(const struct sim *s, int i);
 /* Adds a line to every measure that is due at s->step. Collective; the state on the device is an observed one. */
 void measures_write(struct sim *s, struct measures *m);
 void measures_flush(struct measures *m);
-/* An element has left the run at x: regions that hold the place go on counting it. Not collective. */
-void measures_element_left(struct sim *s, struct measures *m, const double x[3]);
-
 #endif

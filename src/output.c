@@ -5,10 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "energy.h"
 #include "fail.h"
-#include "frame.h"
-#include "particle.h"
 #include "measures.h"
 #include "output_dir.h"
 #include "record.h"
@@ -74,7 +71,7 @@ void output_write(struct sim *s, bool last)
     measures_write(s, out->measures);
     if ((last || frame_due(s, s->step)) && out->frame_step != s->step) {
         measures_flush(out->measures);
-        frame_write(s, out->n_frame++);
+        s->ops->frame(s, out->n_frame++);
         out->frame_step = s->step;
     }
     timer_end(&s->timers, TIMER_OUTPUT);
@@ -93,11 +90,6 @@ bool output_stop_wanted(struct sim *s)
     return out->stop_seen;
 }
 
-void output_element_left(struct sim *s, const double x[3])
-{
-    measures_element_left(s, s->output->measures, x);
-}
-
 _Noreturn void output_stop_numerics(struct sim *s, const char *what, ...)
 {
     char text[1024];
@@ -108,18 +100,6 @@ _Noreturn void output_stop_numerics(struct sim *s, const char *what, ...)
     measures_flush(s->output->measures);
     record_write(s, EXIT_NUMERICS, false);
     fail_stop_together(EXIT_NUMERICS, "step %lld, t = %.9g s: %s", (long long)s->step, (double)s->step * s->dt, text);
-}
-
-void output_check_limit(struct sim *s)
-{
-    struct limit_result limit = particle_limit(s);
-    s->limit_at = s->step;
-    s->dt_limit = s->dt_limit > 0 ? fmin(s->dt_limit, limit.dt) : limit.dt;
-    if (s->dt <= limit.dt || s->scene->time.allow_unstable) return;
-    output_stop_numerics(s,
-        "the time step %.4g s is over its limit %.4g s, set by the contacts of element %lld; take a smaller time.step "
-        "(or softer contacts), or set time.allow_unstable",
-        s->dt, limit.dt, (long long)limit.gid);
 }
 
 void output_close(struct sim *s, int exit_code)

@@ -19,14 +19,8 @@ void output_write(struct sim *s, bool last);
 
 /* A signal, the file `stop`, or --max-time: on this rank, looked at now and then. Not collective. */
 bool output_stop_wanted(struct sim *s);
-/* An element has left the run at x [m]. Not collective. */
-void output_element_left(struct sim *s, const double x[3]);
-
 /* Ends the run because the numbers are no good: run.json is written, exit code EXIT_NUMERICS on all ranks. Frames that are there stay. */
 _Noreturn void output_stop_numerics(struct sim *s, const char *what, ...) __attribute__((format(printf, 2, 3)));
-/* Compares the time step with the limit of the present contacts; over it, and not allowed: output_stop_numerics. */
-void output_check_limit(struct sim *s);
-
 /* Digest, run.json and the closing words. */
 void output_close(struct sim *s, int exit_code);
 

@@ -1,11 +1,15 @@
-/* The parts of the particle method, by file: particle_setup.c, particle_regroup.c, particle_step.c, particle_limit.c. */
+/* The parts of the particle method, by file: particle_input.c, particle_setup.c, particle_regroup.c, particle_step.c, particle_limit.c,
+ * particle_frame.c, particle_measures.c, particle_report.c. What step.h describes is not described again. */
 #ifndef DEMOCLES_PARTICLE_H
 #define DEMOCLES_PARTICLE_H
 
 #include "limit.h"
 #include "sim.h"
 
+void particle_read(struct sim *s);
+void particle_plan(struct sim *s);
 void particle_setup(struct sim *s);
+void particle_warn(struct sim *s);
 void particle_free(struct sim *s);
 /* New owners, ghosts and lists, histories carried over. Collective. */
 void particle_regroup(struct sim *s);
@@ -22,5 +26,19 @@ struct limit_result particle_limit(struct sim *s);
 /* The limit [s] for the densest packing that the scene's elements can form, at the speeds that its geometry allows: what `step: auto` starts from;
  * infinity if nothing can touch. Reads the scene, the walls and the first elements alone. */
 double particle_limit_dense(const struct sim *s);
+
+void particle_check_limit(struct sim *s);
+
+int64_t particle_number(const struct sim *s);
+void particle_frame(struct sim *s, int64_t index);
+int particle_measure_columns(enum measure_kind kind, const struct series_column **column);
+void particle_measure(struct sim *s, const bool *due, double (*value)[MEASURE_COLUMNS]);
+/* An element has left the run at x [m]: counts whose region holds the place go on counting it. Not collective. */
+void particle_left(struct sim *s, const double x[3]);
+bool particle_digest(struct sim *s, uint64_t *digest);
+void particle_count(const struct sim *s, int64_t *n_interaction, int64_t *halo_bytes);
+void particle_report_features(const struct sim *s, struct report *r);
+void particle_report_energy(struct sim *s, struct report *r, bool observed);
+void particle_report_kernels(const struct sim *s, struct report *r);
 
 #endif

@@ -60,7 +60,7 @@ static bool cut_is_due(const struct sim *s)
 static void count_removed(struct sim *s)
 {
     int64_t n[2] = {s->owners->n_removed, s->owners->n_moved};
-    for (int64_t i = 0; i < s->owners->n_removed; i++) output_element_left(s, s->owners->removed[i].x);
+    for (int64_t i = 0; i < s->owners->n_removed; i++) particle_left(s, s->owners->removed[i].x);
     comm_sum_i64(s->comm, n, 2);
     s->n_removed += n[0];
     s->n_moved += n[1];

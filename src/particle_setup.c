@@ -162,6 +162,9 @@ static void first_forces(struct sim *s)
 
 void particle_setup(struct sim *s)
 {
+    s->n_first = s->first->n;
+    s->left = fail_alloc((size_t)s->scene->n_measure * sizeof *s->left);
+    log_print(s->log, "%lld elements, %d walls", (long long)s->n_first, s->scene->n_wall);
     create_kernels(s);
     s->particles = particles_create(s->dev, &s->features, s->program_lists);
     s->scan = scan_create(s->dev, s->program_lists);
@@ -182,6 +185,7 @@ void particle_setup(struct sim *s)
     particle_regroup(s); /* once for nothing: its kernels are compiled before the clock runs, and what starts outside leaves at once */
     s->n_rebuild = 0;
     first_forces(s);
+    energy_now(s, &s->energy_start);
 }
 
 void particle_free(struct sim *s)
@@ -199,6 +203,9 @@ void particle_free(struct sim *s)
     scan_free(s->dev, s->scan);
     particles_free(s->dev, s->particles);
     rcb_free(s->rcb);
+    walls_free(s->walls);
+    generate_free(s->first);
+    free(s->left);
     buffer_free(s->dev, &s->table_pair);
     buffer_free(s->dev, &s->table_wall);
     for (int i = 0; i < 5; i++) launch_free(launch[i]);

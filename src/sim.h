@@ -31,11 +31,13 @@ struct sim {
     struct log *log;
     struct features features;
     struct walls *walls;
-    struct elements_host *first; /* as generated, all elements on every rank */
+    int64_t n_first;             /* elements at the start, of all ranks */
     double domain[6], period[3]; /* box low, high [m]; 0 where not periodic */
     const struct step_ops *ops;
 
     /* particle method */
+    struct elements_host *first; /* as generated, all elements on every rank */
+    int64_t *left;               /* [n_measure] elements that left the run where a count holds, on this rank */
     struct program *program_lists, *program_pair, *program_wall, *program_body;
     struct particles *particles;
     struct cells *cells;
@@ -68,10 +70,9 @@ struct sim {
     struct energy *energy;
     struct energy_sums energy_start;
     double element_steps;         /* elements times steps so far */
-    struct device_counters plain; /* what the plain steps added: those without regroup, look at the limit, observation or the step after one */
+    struct device_counters plain; /* what the plain steps added: those without regroup, observation or the step after one */
     int64_t n_plain;
-    int64_t halo_bytes; /* sent by all ranks */
-    double started;     /* timer_now at the start */
+    double started; /* timer_now at the start */
 };
 
 /* Reads nothing: the scene is there. Opens the device, builds kernels, makes elements, lists and output. Collective; errors stop all ranks. */

@@ -1,4 +1,4 @@
-#include "frame.h"
+#include "particle.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -209,7 +209,7 @@ static int64_t wall_columns(struct sim *s, struct sheet *t, const struct particl
     return m;
 }
 
-void frame_write(struct sim *s, int64_t index)
+void particle_frame(struct sim *s, int64_t index)
 {
     struct particles_host *h = particles_download(s->dev, s->particles, &s->features, s->scene, s->first);
     struct sheet *sheet = fail_alloc(4 * sizeof *sheet);

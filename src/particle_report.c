@@ -1,0 +1,95 @@
+/* What the record of a run says of the particle method. */
+#include "particle.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "digest.h"
+#include "energy.h"
+#include "fail.h"
+#include "report.h"
+
+/* Digest of the state as it lies on the device, in its own bits. Returns false if there are NaNs. */
+bool particle_digest(struct sim *s, uint64_t *digest)
+{
+    const struct particles *p = s->particles;
+    const struct features *f = &s->features;
+    size_t n = (size_t)p->n_owned, bytes = p->field[FIELD_STATE].bytes, real = particles_real(f), preal = particles_preal(f);
+    int stride = (int)(bytes / real);
+    char *state = fail_alloc(n * bytes), *q = fail_alloc(n * 4 * real), *none = fail_alloc(n * 4 * real);
+    int64_t *gid = fail_alloc(n * sizeof *gid);
+    buffer_read(s->dev, &p->field[FIELD_STATE].now, 0, n * bytes, state);
+    buffer_read(s->dev, &p->field[FIELD_GID].now, 0, n * sizeof *gid, gid);
+    if (f->orientation) buffer_read(s->dev, &p->field[FIELD_ORIENTATION].now, 0, n * 4 * real, q);
+    for (size_t i = 0; i < n && !f->orientation; i++) {
+        if (f->real_is_float) ((float *)(void *)q)[4 * i] = 1;
+        else ((double *)(void *)q)[4 * i] = 1;
+    }
+    const char *motion = state + 4 * preal;
+    struct digest_part part[4] = {{state, f->position_is_float, 3, (int)(bytes / preal)}, {motion, f->real_is_float, 3, stride},
+        {q, f->real_is_float, 4, 4}, {f->spin ? motion + 4 * real : none, f->real_is_float, 3, f->spin ? stride : 4}};
+    int64_t n_nan = digest_of_all(s->comm, gid, p->n_owned, part, 4, digest);
+    void *own[] = {state, q, none, gid};
+    for (int i = 0; i < 4; i++) free(own[i]);
+    return n_nan == 0;
+}
+
+int64_t particle_number(const struct sim *s)
+{
+    return s->particles->n_global;
+}
+
+void particle_count(const struct sim *s, int64_t *n_interaction, int64_t *halo_bytes)
+{
+    *n_interaction = s->pairs->now.n_own;
+    *halo_bytes = ghosts_bytes_sent(s->ghosts);
+}
+
+void particle_report_features(const struct sim *s, struct report *r)
+{
+    for (int i = 0; features_name(i); i++) report_integer(r, features_name(i), features_value(&s->features, i));
+}
+
+void particle_report_energy(struct sim *s, struct report *r, bool observed)
+{
+    struct energy_sums now = s->energy_start;
+    if (observed) energy_now(s, &now);
+    const struct energy_sums *both[] = {&s->energy_start, &now};
+    static const char *const name[] = {"start", "end"};
+    report_begin(r, "energy");
+    for (int k = 0; k < 2; k++) {
+        const struct energy_sums *e = both[k];
+        report_begin(r, name[k]);
+        report_number(r, "kinetic", e->kinetic);
+        report_number(r, "rotational", e->rotational);
+        report_number(r, "gravity", e->gravity);
+        if (s->features.energy) {
+            report_number(r, "elastic", e->elastic);
+            report_number(r, "dashpot_normal", e->dashpot_n);
+            report_number(r, "dashpot_tangential", e->dashpot_t);
+            report_number(r, "sliding", e->sliding);
+            report_number(r, "rolling", e->rolling);
+            report_number(r, "bonds", e->bonds);
+            report_number(r, "wall_work", e->wall_work);
+            report_number(r, "removed", e->removed);
+        }
+        report_end(r);
+    }
+    report_number(r, "balance_error", s->features.energy && observed ? energy_balance(&s->energy_start, &now) : (double)NAN);
+    report_end(r);
+    report_numbers(r, "momentum", now.momentum, 3);
+}
+
+void particle_report_kernels(const struct sim *s, struct report *r)
+{
+    struct launch *all[] = {s->pair_force, s->wall_force, s->wall_contacts ? s->wall_contacts->keep_launch : NULL, s->gather, s->kick_drift,
+        s->ghosts->gather, s->pairs->rows, s->pairs->carry, s->wall_contacts ? s->wall_contacts->rows : NULL};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        if (!all[i]) continue;
+        report_begin(r, all[i] == s->ghosts->gather ? "pack_ghosts" : all[i]->name);
+        report_number(r, "seconds", launch_seconds(all[i]));
+        report_integer(r, "launches", all[i]->n_run);
+        report_end(r);
+    }
+}
