@@ -23,7 +23,8 @@ static int64_t row_bytes(const struct table *table)
 static int64_t estimate(const struct comm *comm, const struct frame *frame)
 {
     enum { PER_POINT = 3 * 8 + 1, PER_DATASET = 4096, FIXED = 65536 };
-    int64_t sum = frame->points.n_row * (row_bytes(&frame->points) + PER_POINT), n_dataset = frame->points.n_column + frame->n_state;
+    int64_t sum = frame->points.n_row * (row_bytes(&frame->points) + PER_POINT) + frame->cells.n_row * row_bytes(&frame->cells);
+    int64_t n_dataset = frame->points.n_column + frame->cells.n_column + frame->n_state;
     for (int t = 0; t < frame->n_state; t++) {
         sum += frame->state[t].n_row * row_bytes(&frame->state[t]);
         n_dataset += frame->state[t].n_column;
@@ -39,23 +40,34 @@ static void write_i64(struct h5_writer *writer, hid_t group, const char *name, c
     h5_column(writer, group, &column, h5_rows_of(writer->comm, n));
 }
 
-/* One vertex per point: connectivity 0..n-1 and offsets 0..n count within the rank's own part. */
-static void write_cells(struct h5_writer *writer, hid_t group, int64_t n)
+/* n points, `corners` of them per cell: connectivity 0..n-1 and offsets 0, corners, ... n count within the rank's own part. */
+static void write_cells(struct h5_writer *writer, hid_t group, int64_t n, int corners)
 {
-    enum { VTK_VERTEX = 1 };
-    int64_t *count = fail_alloc((size_t)(n + 1) * sizeof *count);
-    unsigned char *kind = fail_alloc((size_t)n);
+    enum { VTK_VERTEX = 1, VTK_HEXAHEDRON = 12 };
+    int64_t n_cell = n / corners, *count = fail_alloc((size_t)(n + 1) * sizeof *count), *offset = fail_alloc((size_t)(n_cell + 1) * sizeof *offset);
+    unsigned char *kind = fail_alloc((size_t)n_cell);
     for (int64_t i = 0; i <= n; i++) count[i] = i;
-    memset(kind, VTK_VERTEX, (size_t)n);
-    struct column types = {"Types", "1", "VTK cell type: vertex", COLUMN_U8, 1, kind};
+    for (int64_t i = 0; i <= n_cell; i++) offset[i] = corners * i;
+    memset(kind, corners == 1 ? VTK_VERTEX : VTK_HEXAHEDRON, (size_t)n_cell);
+    struct column types = {"Types", "1", corners == 1 ? "VTK cell type: vertex" : "VTK cell type: hexahedron", COLUMN_U8, 1, kind};
     write_i64(writer, group, "NumberOfPoints", "points of each rank's part", &n, 1);
-    write_i64(writer, group, "NumberOfCells", "cells of each rank's part", &n, 1);
+    write_i64(writer, group, "NumberOfCells", "cells of each rank's part", &n_cell, 1);
     write_i64(writer, group, "NumberOfConnectivityIds", "point indices of each rank's part", &n, 1);
-    write_i64(writer, group, "Connectivity", "point of each cell, counted within its part", count, n);
-    write_i64(writer, group, "Offsets", "begin of each cell in Connectivity, and the end, within each part", count, n + 1);
-    h5_column(writer, group, &types, h5_rows_of(writer->comm, n));
+    write_i64(writer, group, "Connectivity", "points of each cell, counted within its part", count, n);
+    write_i64(writer, group, "Offsets", "begin of each cell in Connectivity, and the end, within each part", offset, n_cell + 1);
+    h5_column(writer, group, &types, h5_rows_of(writer->comm, n_cell));
     free(kind);
     free(count);
+    free(offset);
+}
+
+/* Group `name` with the columns of the table from `first` on. */
+static void write_fields(struct h5_writer *writer, hid_t grid, const char *name, const struct table *table, int first)
+{
+    struct h5_rows rows = h5_rows_of(writer->comm, table->n_row);
+    hid_t data = h5_group(writer, grid, name);
+    for (int k = first; k < table->n_column; k++) h5_column(writer, data, &table->column[k], rows);
+    H5Gclose(data);
 }
 
 static void write_grid(struct h5_writer *writer, const struct frame *frame, struct h5_rows rows)
@@ -69,25 +81,24 @@ static void write_grid(struct h5_writer *writer, const struct frame *frame, stru
     struct column position = points->column[0];
     position.name = "Points";
     h5_column(writer, grid, &position, rows);
-    write_cells(writer, grid, rows.mine);
+    write_cells(writer, grid, rows.mine, frame->hexahedra ? 8 : 1);
     hid_t field = h5_group(writer, grid, "FieldData");
     struct column time = {"TimeValue", "s", "simulated time", COLUMN_F64, 1, &frame->time};
     h5_column(writer, field, &time, h5_rows_of(writer->comm, writer->comm->rank == 0));
     H5Gclose(field);
-    hid_t data = h5_group(writer, grid, "PointData");
-    for (int k = 1; k < points->n_column; k++) h5_column(writer, data, &points->column[k], rows);
-    H5Gclose(data);
+    write_fields(writer, grid, "PointData", points, 1);
+    if (frame->cells.n_column > 0) write_fields(writer, grid, "CellData", &frame->cells, 0);
     H5Gclose(grid);
 }
 
-/* Index of the point column that is this column of the state (the same memory under the same name on every rank), or -1. */
-static int64_t same_point_column(const struct comm *comm, const struct table *points, const struct table *table, const struct column *column)
+/* Index of the column of `shown` that is this column of the state (the same memory under the same name on every rank), or -1. */
+static int64_t same_column(const struct comm *comm, const struct table *shown, const struct table *table, const struct column *column)
 {
     int64_t found[2] = {-1, 1}; /* smallest and, negated, largest over the ranks agree where all found the same */
-    for (int k = 0; k < points->n_column; k++) {
-        const struct column *other = &points->column[k];
+    for (int k = 0; k < shown->n_column; k++) {
+        const struct column *other = &shown->column[k];
         if (strcmp(other->name, column->name) || other->type != column->type || other->width != column->width) continue;
-        if (points->n_row == table->n_row && (other->data == column->data || table->n_row == 0)) found[0] = k;
+        if (shown->n_row == table->n_row && (other->data == column->data || table->n_row == 0)) found[0] = k;
     }
     found[1] = -found[0];
     comm_min_i64(comm, found, 2);
@@ -100,12 +111,12 @@ static void write_table(struct h5_writer *writer, hid_t state, hid_t counts, con
     hid_t group = h5_group(writer, state, table->name);
     for (int k = 0; k < table->n_column; k++) {
         const struct column *column = &table->column[k];
-        int64_t same = same_point_column(writer->comm, &frame->points, table, column);
-        if (same < 0) {
+        int64_t point = same_column(writer->comm, &frame->points, table, column), cell = same_column(writer->comm, &frame->cells, table, column);
+        if (point < 0 && cell < 0) {
             h5_column(writer, group, column, rows);
             continue;
         }
-        char *path = same > 0 ? fail_format("/VTKHDF/PointData/%s", column->name) : fail_strdup("/VTKHDF/Points");
+        char *path = point == 0 ? fail_strdup("/VTKHDF/Points") : fail_format("/VTKHDF/%s/%s", point > 0 ? "PointData" : "CellData", column->name);
         h5_link(writer, path, group, column->name);
         free(path);
     }

@@ -1,11 +1,12 @@
 /* Frames: VTKHDF 1.0 files that ParaView opens, with the whole state beside the picture, so that a run continues from any of them.
  *
  * frame_000123.hdf holds
- *   /VTKHDF        unstructured grid of one vertex per element: Points, PointData/NAME, FieldData/TimeValue; one part per rank, rank after rank
+ *   /VTKHDF        unstructured grid of one vertex, or hexahedron, per element: Points, PointData/NAME, CellData/NAME, FieldData/TimeValue; one part
+ *                  per rank, rank after rank
  *   /democles      attributes format_version, step, time, index, n_element and the caller's; dataset resolved (the scene as YAML)
  *   /democles/TABLE/COLUMN   every table of the state, rank after rank;  /democles/rows/TABLE [n_rank] says how many rows each rank had
  * Every dataset carries the attributes name, unit, description and checksum (see h5_check.h).
- * A column of the state that is a point column too (same name, memory, type, width) is a hard link to it, not a copy.
+ * A column of the state that is a point or cell column too (same name, memory, type, width) is a hard link to it, not a copy.
  * A frame appears by rename, complete and on disk, or not at all. Knows no element, no device: it writes the tables that it is given. */
 #ifndef DEMOCLES_SNAPSHOT_H
 #define DEMOCLES_SNAPSHOT_H
@@ -28,6 +29,8 @@ struct frame {
     double time;               /* [s] */
     int64_t index;             /* number in the file's name */
     struct table points;       /* column 0: position [n][3] F64 or F32 [m]; the others become PointData */
+    bool hexahedra;            /* each eight points that follow each other are the corners of a cell, in VTK's order; else each point is a cell */
+    struct table cells;        /* CellData, a row per cell */
     const struct table *state; /* [n_state] the whole state, below /democles */
     int n_state;
     const char *resolved;              /* the resolved scene as YAML text, same on every rank */
