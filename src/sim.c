@@ -59,6 +59,8 @@ static void set_step(struct sim *s)
     s->dt = t->step > 0 ? t->step : t->safety * limit;
     if (!(s->dt > 0) || isinf(s->dt))
         fail_stop_together(EXIT_SCENE, "%s: time.step: auto finds no limit in this scene; give a value", s->scene->path);
+    if (!(t->end / s->dt <= SCENE_STEPS_MOST))
+        fail_stop_together(EXIT_SCENE, "%s: time.step: auto takes %.3g s, too many steps until time.end; give a value", s->scene->path, s->dt);
     s->n_step = (int64_t)ceil(t->end / s->dt * (1 - 1e-12));
     if (s->options->n_step >= 0 && s->options->n_step < s->n_step) s->n_step = s->options->n_step;
 }
