@@ -149,12 +149,13 @@ static void add_kernels(struct report *r, const struct sim *s)
     report_end(r);
 }
 
-void record_write(struct sim *s, int exit_code, bool observed)
+bool record_write(struct sim *s, int exit_code, bool observed)
 {
     char digest[17] = "";
     static const char *const precision[] = {"double", "double", "mixed", "single"};
     struct report *r = report_create();
     bool whole = observed && take_digest(s, digest);
+    if (observed && !whole) exit_code = EXIT_NUMERICS;
     s->halo_bytes = ghosts_bytes_sent(s->ghosts);
     comm_sum_i64(s->comm, &s->halo_bytes, 1);
     report_text(r, "version", DEMOCLES_VERSION);
@@ -187,4 +188,5 @@ void record_write(struct sim *s, int exit_code, bool observed)
     report_free(r);
     free(hash);
     if (!written && exit_code == EXIT_DONE) fail_stop(EXIT_IO, "run.json could not be written");
+    return whole || !observed;
 }

@@ -64,6 +64,15 @@ class Numerics(Failures):
                 self.assertEqual(self.leftovers(run.dir), [])
                 self.assertGreater(self.whole(run.dir), 0)
 
+    def test_nan_in_the_last_step(self):
+        """Too few steps for the flags of the drift to be read: 1e-41 kg are no mass in single precision."""
+        dust = parallel_scenes.scene(3, 1e-5, {"normal": parallel_scenes.LINEAR}, [{"name": "dust", "file": "dust.csv", "velocity": [0, 0, 1]}])
+        dust["measure"], dust["precision"] = [], "single"
+        with open(os.path.join(self.dir, "dust.csv"), "w") as file:
+            file.write("x,y,z,radius\n0,0,0,1e-18\n0,0,0.1,0.001\n")
+        for ranks in (1, 3):
+            self.failed_record(self.fails(self.put(dust), ranks, 5, "step 3, t = 3e-05 s: the last state holds NaN"), 5)
+
     def test_lost_element(self):
         free = parallel_scenes.scene(10**4, 1e-4, {}, [parallel_scenes.block("free", (0, 0, 0), (0.02, 0.02, 0.02), 0.005, velocity=(1, 0, 0))],
                                      domain={"box": {"min": [-0.1, -0.1, -1], "max": [0.1, 0.1, 1]}})
