@@ -179,6 +179,7 @@ static void no_scene_at_all(void **state)
     struct fixture *f = *state;
     fixture_expect_one(f, "", "scene.yaml:1:1: there is nothing in it");
     fixture_expect_one(f, "# only a comment\n", "scene.yaml:1:1: there is nothing in it");
+    fixture_expect_one(f, "\xef\xbb\xbfhello\n", "scene.yaml:1:1: expected a mapping, found text");
     fixture_expect_one(f, "hello\n", "scene.yaml:1:1: expected a mapping, found text");
     fixture_expect_one(f, "a: 1\nb: \xff\n", "scene.yaml:2:4: not UTF-8 text (byte 0xff)");
     fixture_expect_one(f, "a: \x07\n", "scene.yaml:1:4: control character 0x07");
