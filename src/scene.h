@@ -12,6 +12,9 @@
 enum method { METHOD_PARTICLES, METHOD_LATTICE };
 enum precision { PRECISION_DEFAULT, PRECISION_DOUBLE, PRECISION_MIXED, PRECISION_SINGLE };
 
+/* More steps than this are no run but a mistake; all of them are whole numbers in double precision. */
+#define SCENE_STEPS_MOST 1e15
+
 struct scene_time {
     double end;          /* [s] */
     double step;         /* [s]; 0: auto */
