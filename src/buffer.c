@@ -115,15 +115,7 @@ void buffer_read(struct device *dev, const struct buffer *buffer, size_t offset,
 
 void buffer_zero(struct device *dev, struct buffer *buffer)
 {
-    if (!buffer->mem) return;
-    if (!dev->is_oclgrind) {
-        fill(dev, buffer, 0);
-        return;
-    }
-    /* Of these zeros oclgrind shall know; of the ones that reserve fills in it shall not, so that it finds who reads them. */
-    void *zero = fail_alloc(buffer->capacity);
-    check_cl(clEnqueueWriteBuffer(dev->compute, buffer->mem, CL_TRUE, 0, buffer->capacity, zero, 0, NULL, NULL));
-    free(zero);
+    if (buffer->mem) fill(dev, buffer, 0);
 }
 
 void buffer_write_begin(struct device *dev, cl_command_queue queue, struct buffer *buffer, size_t offset, size_t bytes, const void *data,

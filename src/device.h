@@ -37,7 +37,6 @@ struct device {
     bool fp64;                /* double precision */
     bool fp32_correct_divide; /* float / and sqrt can be correctly rounded (program.c then asks for it) */
     bool unified;             /* host and device share memory */
-    bool is_oclgrind;         /* the checker: buffer.c helps it to know what was written */
     bool one_lane;            /* pocl on a CPU: one work-item goes over a batch of contacts, see kernels/batch.h */
     bool is_pocl;             /* builds and first launches are then serialised per node, see kernel_cache.h */
     bool profile;

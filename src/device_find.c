@@ -96,7 +96,6 @@ static void query(cl_platform_id platform, cl_device_id id, struct device_entry 
     d->fp32_correct_divide = fp32 & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT;
     d->unified = unified;
     d->is_pocl = strstr(d->platform_name, "Portable Computing Language");
-    d->is_oclgrind = strstr(d->platform_name, "Oclgrind");
     d->one_lane = d->is_pocl && (d->type & CL_DEVICE_TYPE_CPU); /* others vectorise over the work-items of a group */
     bus_address(id, entry->bus, sizeof entry->bus);
     entry->unusable = d->type & CL_DEVICE_TYPE_CUSTOM ? "not programmable" : !available ? "not available" : !compiler ? "no compiler" : NULL;

@@ -91,7 +91,11 @@ def funnel(cases):
     s["partition"] = {"every": 10, "threshold": 0}
     s["output"] = {}
     s["measure"] = [{"name": "outflow", "every": 0.003, "count": {"below": {"z": 0}}}, {"name": "energy", "every": 0.003, "energy": "all"}]
-    return s, {name: open(os.path.join(cases, "v_funnel", name)).read() for name in ("filling.stl", "funnel.stl")}
+    files = {}
+    for name in ("filling.stl", "funnel.stl"):
+        with open(os.path.join(cases, "v_funnel", name)) as file:
+            files[name] = file.read()
+    return s, files
 
 
 def column(cases):
@@ -197,15 +201,71 @@ def apart(cases):
     return scene(300, 1e-4, {}, clouds), {}
 
 
+def touching_csv(n, spacing, radii, origin, drift, seed=7):
+    """Spheres on a lattice n[0] x n[1] x n[2], radii in turn; with a spacing below the diameter they touch at the start. Drift, random velocities
+    and spins pull contacts apart and roll them."""
+    rng, rows = random.Random(seed), "x,y,z,radius,vx,vy,vz,wx,wy,wz\n"
+    for number, cell in enumerate((i, j, k) for i in range(n[0]) for j in range(n[1]) for k in range(n[2])):
+        values = [o + spacing * c for o, c in zip(origin, cell)] + [radii[number % len(radii)]]
+        values += [d + rng.gauss(0, 2) for d in drift] + [rng.gauss(0, 300) for _ in range(3)]
+        rows += ",".join("%.17g" % value for value in values) + "\n"
+    return rows
+
+
+def shutters(dt, steps):
+    """Plates far away that come and go: each makes the lists anew."""
+    return [{"name": f"shutter{step}", "surface": {"rectangle": {"center": [0, 0, -1], "normal": [0, 0, 1], "size": [0.01, 0.01]}},
+             "motion": {"remove_at" if step % 2 else "appear_at": step * dt}} for step in steps]
+
+
+def few(cases):
+    """Few elements, steps, many rebuilds: equal sizes, friction, bonds on moving planes, triangles, a rod, periodic, no account of energy."""
+    dt, radius = 2e-5, 0.0025
+    walls = [{"name": "floor", "surface": {"plane": {"point": [0, 0, 0], "normal": [0, 0, 1]}}, "motion": {"velocity": [1, 0, 0.5]}},
+             {"name": "rod", "surface": {"cylinder": {"from": [0.0285, -1, 0.005], "to": [0.0285, 1, 0.005], "radius": 0.004, "inside": False}}},
+             {"name": "sheet", "surface": {"stl": "sheet.stl"}}, *shutters(dt, (2, 5))]
+    contact = {"normal": LINEAR, "tangential": FRICTION, "binding": {"force": 1e-2}}
+    s = scene(8, dt, contact, [{"name": "few", "file": "few.csv"}], walls,
+              domain={"periodic": ["y"], "box": {"min": [-0.02, -0.0025, -0.02], "max": [0.04, 0.0123, 0.04]}})
+    s["measure"] = [{"name": name, "every": 8 * dt, "wall_force": name} for name in ("floor", "rod", "sheet")]
+    s["partition"] = {"every": 0}
+    return s, {"few.csv": touching_csv((5, 3, 1), 0.0049, [radius], (0.0002, 0, 0.00245), (30, 15, 0)),
+               "sheet.stl": sheet_stl(-0.003, 0.026, 1, lambda x, y: 0.0048 + 0.1 * x)}
+
+
+def mixed(cases):
+    """The same with Hertz, sizes and materials, rolling springs, bonds, a box and a tube, the account of energy; some leave the domain."""
+    dt = 1e-5
+    contact = {"normal": HERTZ, "tangential": {"damping_ratio": 0.2, "friction": 0.4},
+               "rolling": {"model": "epsd", "friction": 0.1, "damping_ratio": 0.3}, "binding": {"force": 2e-3}}
+    walls = [box("room", (-0.0028, -0.0028, 0.0002), (1, 1, 1)),
+             {"name": "tube", "surface": {"cylinder": {"from": [0.0098, 0.0049, -1], "to": [0.0098, 0.0049, 1], "radius": 0.0133}}},
+             {"name": "sheet", "surface": {"stl": "sheet.stl"}, "motion": {"rotation": {"center": [0, 0, 0], "axis": [0, 0, 1], "rate": 30}}},
+             *shutters(dt, (2, 7))]
+    elements = [{"name": "mixed", "file": "mixed.csv"}, {"name": "fast", "file": "fast.csv", "material": "steel"}]
+    s = scene(8, dt, contact, elements, walls, observe=1, output={"fields": ["velocity", "orientation"]},
+              domain={"remove_outside": True, "box": {"min": [-0.01, -0.01, -0.01], "max": [0.03, 0.03, 0.0123]}})
+    s["contacts"].append({"between": ["steel", "steel"], **contact})
+    s["partition"] = {"every": 0}
+    return s, {"mixed.csv": touching_csv((5, 3, 1), 0.0049, [0.0025, 0.0026, 0.002], (0, 0, 0.0025), (55, 3, -4)),
+               "fast.csv": "x,y,z,radius,vx,vy,vz\n0.006,0.004,0.0122,0.001,0,0,5\n0.0015,0.0045,0.0069,0.0015,0,0,-20\n",
+               "sheet.stl": sheet_stl(-0.012, 0.03, 1, lambda x, y: 0.0048 + 0.1 * x)}
+
+
 ALL = {"funnel": funnel, "column": column, "hertz": hertz, "gas_x": gas("x"), "gas_xy": gas("xy"), "gas_xyz": gas("xyz"), "shear": shear,
     "three": three,
-       "thin": thin, "moving": moving, "leaving": leaving, "apart": apart}
+       "thin": thin, "moving": moving, "leaving": leaving, "apart": apart, "few": few, "mixed": mixed}
 
 
-def put(name, folder, cases):
-    """Writes scene `name` into a folder; returns the path of the scene."""
-    content, files = ALL[name](cases)
+def write(scene_and_files, folder):
+    """Into a folder: the scene, as scene.yaml, and what it reads; returns the path of the scene."""
+    content, files = scene_and_files
     for file, text in {**files, "scene.yaml": yaml.safe_dump(content)}.items():
         with open(os.path.join(folder, file), "w") as out:
             out.write(text)
     return os.path.join(folder, "scene.yaml")
+
+
+def put(name, folder, cases):
+    """Writes scene `name` into a folder; returns its path."""
+    return write(ALL[name](cases), folder)

@@ -1,0 +1,50 @@
+#!/usr/bin/python3
+"""Scenes with every feature, for a few steps on one rank and on three: the same bits, and not a word on stderr but warnings; nor after a request to
+stop. Short, so that sanitizers run them too. Own arguments: results_tool, the tests."""
+import signal
+
+import parallel_runs
+import robust_jobs
+
+# A sanitizer that notes who allocates takes a minute for each kernel that pocl compiles; here it does not yet.
+COMPILES = {"ASAN_OPTIONS": "detect_leaks=0"}
+
+
+class Short(robust_jobs.Case):
+    def is_quiet(self, err):
+        said = [line for line in err.splitlines() if not line.startswith("democles: warning: ")]
+        self.assertEqual(said, [])
+
+    def runs(self, name, steps):
+        scene = self.scene(name)
+        first = self.good_run(scene, 1, "--steps", str(steps), env=COMPILES).record()
+        self.assertGreater(first["rebuilds"], 0)
+        for ranks in (1, 3):
+            with self.subTest(ranks=ranks):
+                run = self.good_run(scene, ranks, "--steps", str(steps))
+                self.is_quiet(run.err)
+                self.assertEqual(run.record()["digest"], first["digest"])
+
+    def test_few(self):
+        self.runs("few", 9)
+
+    def test_mixed(self):
+        self.runs("mixed", 8)
+
+    def test_shear(self):
+        self.runs("shear", 70)
+
+    def test_stop(self):
+        scene = self.put(robust_jobs.bed(frame_every=20))
+        self.good_run(scene, 1, "--steps", "2", env=COMPILES)
+        for ranks, rank in ((1, 0), (3, 2)):
+            with self.subTest(ranks=ranks):
+                job = self.job(scene, ranks)
+                job.wait_frames(2)
+                job.signal(signal.SIGTERM, rank)
+                self.assertEqual(job.end(), 75, job.err())
+                self.is_quiet(job.err())
+
+
+if __name__ == "__main__":
+    parallel_runs.main(1)
