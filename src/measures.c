@@ -29,7 +29,8 @@ static int columns_of(enum measure_kind kind, const struct series_column **colum
     case MEASURE_ENERGY: *column = energy; return 12;
     case MEASURE_MOMENTUM: *column = momentum; return 6;
     case MEASURE_WALL_FORCE: *column = wall; return 4;
-    case MEASURE_PROBE: break;
+    case MEASURE_PROBE:
+    case MEASURE_STRESS_MAX: break; /* of method lattice */
     }
     *column = probe;
     return 9;
@@ -162,6 +163,7 @@ void measures_write(struct sim *s, struct measures *m)
         case MEASURE_PROBE: measure_probe(s, what->element, h, value); break;
         case MEASURE_ENERGY:
         case MEASURE_MOMENTUM: measure_energy(s, what->kind, &energy, value); break;
+        case MEASURE_STRESS_MAX: break; /* of method lattice */
         }
         series_add(m->series[i], (double)s->step * s->dt, value);
     }
