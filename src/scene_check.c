@@ -33,6 +33,13 @@ static void check_cylinder(struct scene_reader *reader, char *path, const double
     free(path);
 }
 
+void scene_check_region(struct scene_reader *reader, char *path, const struct region *region)
+{
+    check_box(reader, fail_format("%s.box", path), region->min, region->max);
+    check_cylinder(reader, fail_format("%s.cylinder", path), region->from, region->to);
+    free(path);
+}
+
 static void check_direction(struct scene_reader *reader, char *path, const double v[3])
 {
     if (is_given(reader, path) && !scene_issue_is_below(reader, path) && v[0] == 0 && v[1] == 0 && v[2] == 0)
@@ -44,8 +51,7 @@ static void check_elements(struct scene_reader *reader)
 {
     for (int k = 0; k < reader->scene->n_group; k++) {
         const struct element_group *group = &reader->scene->group[k];
-        check_box(reader, fail_format("elements[%d].fill.region.box", k), group->region.min, group->region.max);
-        check_cylinder(reader, fail_format("elements[%d].fill.region.cylinder", k), group->region.from, group->region.to);
+        scene_check_region(reader, fail_format("elements[%d].fill.region", k), &group->region);
         char *path = fail_format("elements[%d].shape", k);
         if (is_given(reader, path) && !scene_issue_is_below(reader, path) && group->diameter[0] > group->diameter[1])
             scene_issue_on(reader, path, "min must not be above max");
@@ -185,8 +191,18 @@ static void check_domain(struct scene_reader *reader)
         scene_issue_on(reader, "domain.periodic", "needs 'box': what repeats must have an extent");
 }
 
+static void check_scheme(struct scene_reader *reader)
+{
+    if (reader->scene->time.scheme != SCHEME_LEAPFROG) scene_issue_on(reader, "time.scheme", "particles take leapfrog alone");
+}
+
 void scene_check(struct scene_reader *reader)
 {
+    if (reader->scene->method == METHOD_LATTICE) {
+        scene_check_lattice(reader);
+        return;
+    }
+    check_scheme(reader);
     check_elements(reader);
     check_walls(reader);
     check_contacts(reader);
@@ -201,6 +217,7 @@ static void normalise(double v[3])
 
 void scene_check_derive(struct scene *scene)
 {
+    scene_check_derive_damping(scene);
     for (int k = 0; k < scene->n_contact; k++) {
         struct contact *contact = &scene->contact[k];
         if (contact->restitution > 0) contact->damping_ratio = restitution_damping(contact->restitution, contact->attraction);
