@@ -5,7 +5,7 @@
 
 #include "check_parts.h"
 #include "fail.h"
-#include "lattice_features.h"
+#include "lattice_input.h"
 #include "lattice_frequency.h"
 #include "lattice_loads.h"
 #include "scene_report.h"
@@ -100,7 +100,9 @@ int check_lattice(const struct comm *comm, const struct scene *scene, bool resol
     scene_report_errors(comm, &errors);
     if (comm->rank == 0 && resolved) fputs(scene->resolved, stdout);
     else if (comm->rank == 0) {
-        struct lattice_features features = lattice_features_of(scene, cells);
+        struct lattice_input *input = lattice_input_create(scene, cells, 0);
+        struct lattice_features features = lattice_features_of(cells, &input->options);
+        lattice_input_free(input);
         check_head(scene);
         print_cells(scene, cells);
         print_thin(scene, cells);

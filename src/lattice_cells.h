@@ -8,6 +8,7 @@
 #ifndef DEMOCLES_LATTICE_CELLS_H
 #define DEMOCLES_LATTICE_CELLS_H
 
+#include "../kernels/loads.h"
 #include "scene.h"
 
 #include <stdint.h>
@@ -16,6 +17,7 @@ struct lattice_loads;
 
 /* Bits of a cell: six links as LINK_BIT of kernels/law_volume.h, then fixed DOF x, y, z, rx, ry, rz. */
 enum { CELL_LINKS = 63, CELL_FIXED = 63 << 6 };
+#define CELL_LINK(face) (1 << (face))
 #define CELL_FIX(dof) (64 << (dof))
 
 /* Centres on a surface belong to it, to this share of the edge. */
