@@ -131,7 +131,8 @@ LAW struct lattice_sums lattice_sums_zero(void)
     return s;
 }
 
-/* The cell at the next stage, or at the end of the step; `now`: v and w of this stage, `start`: the step's start; a, b: accelerations, 0 of fixed DOF. */
+/* The cell at the next stage, or at the end of the step; `now`: v and w of this stage, `start`: the step's start; a, b: accelerations, 0 of fixed
+ * DOF. */
 LAW struct link_cell lattice_stage_next(
     struct link_cell now, struct link_cell start, vec3 a, vec3 b, struct lattice_stage c, struct lattice_sums *sum)
 {

@@ -1,7 +1,7 @@
 /* Numbers that host and kernels of the lattice agree on.
  *
- * Word of a cell: bits 0-5 its links (-x, +x, -y, +y, -z, +z), 6-11 its fixed DOF (x, y, z, and rotation about them), 12 whether this rank owns it, 16-23
- * its kind. Planes of x: u(3), then q (w, x, y, z) or theta(3); of v: v(3), w(3). */
+ * Word of a cell: bits 0-5 its links (-x, +x, -y, +y, -z, +z), 6-11 its fixed DOF (x, y, z, and rotation about them), 12 whether this rank owns it,
+ * 16-23 its kind. Planes of x: u(3), then q (w, x, y, z) or theta(3); of v: v(3), w(3). */
 #ifndef DEMOCLES_LATTICE_WORDS_H
 #define DEMOCLES_LATTICE_WORDS_H
 

@@ -1,8 +1,9 @@
-/* The lattice: forces of the six links of each owned cell, loads, and the cell's next state, in one pass. No atomics, no sums across cells: each link is
- * evaluated at both ends, from exact copies, in the same order.
+/* The lattice: forces of the six links of each owned cell, loads, and the cell's next state, in one pass. No atomics, no sums across cells: each link
+ * is evaluated at both ends, from exact copies, in the same order.
  *
  * One work-group per run of BATCH cells (lattice_view.h). Positions go from one set of planes to another, since neighbours still read the old ones;
- * velocities stay in place unless links are damped. A run of one material without loads or fixed DOF needs no table per cell and has a loop of its own.
+ * velocities stay in place unless links are damped. A run of one material without loads or fixed DOF needs no table per cell and has a loop of its
+ * own.
  *
  * lint: WITH_SHEAR_APART requires WITH_VOLUME */
 #include "lattice_view.h"
@@ -189,7 +190,8 @@ LAW struct link_cell lattice_advance(int mixed, struct link_cell c, struct link_
  * numbers of sets of planes. */
 __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1)))
 void link_force(int first, int n, __global const int *list, __global const int *info, __global const int *base, __global const int *word,
-                int n_run, int n_kind, long plane, __global preal *restrict x, long x_in, long x_out, __global real *restrict v, long v_in, long v_out,
+                int n_run, int n_kind, long plane, __global preal *restrict x, long x_in, long x_out, __global real *restrict v, long v_in,
+                long v_out,
                 __global const real *link, __global const real *cell,
 #if WITH_VOLUME
                 __global const real *p,

@@ -1,5 +1,5 @@
-/* The volumetric pass: p = lambda Th of each cell, from its six links. Runs as link_force.cl. Ghosts that owned cells are linked to get theirs here too,
- * from their own neighbours, in the same order as on the rank that owns them. */
+/* The volumetric pass: p = lambda Th of each cell, from its six links. Runs as link_force.cl. Ghosts that owned cells are linked to get theirs here
+ * too, from their own neighbours, in the same order as on the rank that owns them. */
 #include "lattice_view.h"
 
 LAW real lattice_part(int face, int mixed, struct lattice_view s, size_t l, int word, struct link_cell me, real eta)

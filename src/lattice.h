@@ -1,7 +1,7 @@
 /* The lattice method on this rank's device: cells in runs, kernels for what the body needs, one step of any scheme on any number of ranks.
  *
- * Steps as in step.h. After lattice_create, and after lattice_advance with `observe`, displacements, rotations and velocities on the device are of one
- * time, the step's. The bits do not depend on the ranks, nor on which steps are observed. Knows no scene. */
+ * Steps as in step.h. After lattice_create, and after lattice_advance with `observe`, displacements, rotations and velocities on the device are of
+ * one time, the step's. The bits do not depend on the ranks, nor on which steps are observed. Knows no scene. */
 #ifndef DEMOCLES_LATTICE_H
 #define DEMOCLES_LATTICE_H
 
@@ -49,8 +49,8 @@ void lattice_advance(struct lattice *l, bool observe);
 /* After an observed step, and at the start: on to the next. */
 void lattice_resume(struct lattice *l);
 
-/* The observed state of this rank's cells, in the order of layout->gid, [n_owned] each; theta is of small rotations, q (w, x, y, z) of any. Those that
- * are NULL are left out. */
+/* The observed state of this rank's cells, in the order of layout->gid, [n_owned] each; theta is of small rotations, q (w, x, y, z) of any. Those
+ * that are NULL are left out. */
 struct lattice_motion {
     double (*u)[3], (*theta)[3], (*q)[4], (*v)[3], (*w)[3];
 };

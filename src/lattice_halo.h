@@ -1,5 +1,5 @@
-/* Ghosts of the lattice: fetched before each evaluation of the forces, while the device works on cells that need none. The order of calls, and why the
- * copy of arrivals cannot overtake what still reads the ones before, is that of ghosts.h. Knows records and indices, no physics. */
+/* Ghosts of the lattice: fetched before each evaluation of the forces, while the device works on cells that need none. The order of calls, and why
+ * the copy of arrivals cannot overtake what still reads the ones before, is that of ghosts.h. Knows records and indices, no physics. */
 #ifndef DEMOCLES_LATTICE_HALO_H
 #define DEMOCLES_LATTICE_HALO_H
 
