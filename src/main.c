@@ -12,9 +12,6 @@
 /* `democles run`: collective. */
 static int run(struct comm *comm, struct options *options, struct scene *scene)
 {
-    /* Until the solver of the lattice is built in. */
-    if (scene->method == METHOD_LATTICE)
-        fail_stop_together(EXIT_SCENE, "%s: method lattice: its solver is not in this build; `democles check` reads such a scene", scene->path);
     char *dir = options->run.dir ? fail_strdup(options->run.dir) : fail_format("out/%s", scene->name);
     options->run.dir = dir;
     signals_install();

@@ -14,13 +14,13 @@ static bool is_given(const struct scene_reader *reader, const char *path)
     return scene_path_find(reader->root, path) != NULL;
 }
 
-/* min < max in every direction. */
-static void check_box(struct scene_reader *reader, char *path, const double min[3], const double max[3])
+/* min < max in every direction, or at least min <= max of a box that may be flat. */
+static void check_box(struct scene_reader *reader, char *path, const double min[3], const double max[3], bool may_be_flat)
 {
     if (is_given(reader, path) && !scene_issue_is_below(reader, path))
         for (int k = 0; k < 3; k++)
-            if (!(min[k] < max[k])) {
-                scene_issue_on(reader, path, "min must be below max in %c", "xyz"[k]);
+            if (may_be_flat ? min[k] > max[k] : !(min[k] < max[k])) {
+                scene_issue_on(reader, path, "min must %s max in %c", may_be_flat ? "not be above" : "be below", "xyz"[k]);
                 break;
             }
     free(path);
@@ -33,9 +33,9 @@ static void check_cylinder(struct scene_reader *reader, char *path, const double
     free(path);
 }
 
-void scene_check_region(struct scene_reader *reader, char *path, const struct region *region)
+void scene_check_region(struct scene_reader *reader, char *path, const struct region *region, bool may_be_flat)
 {
-    check_box(reader, fail_format("%s.box", path), region->min, region->max);
+    check_box(reader, fail_format("%s.box", path), region->min, region->max, may_be_flat);
     check_cylinder(reader, fail_format("%s.cylinder", path), region->from, region->to);
     free(path);
 }
@@ -51,7 +51,7 @@ static void check_elements(struct scene_reader *reader)
 {
     for (int k = 0; k < reader->scene->n_group; k++) {
         const struct element_group *group = &reader->scene->group[k];
-        scene_check_region(reader, fail_format("elements[%d].fill.region", k), &group->region);
+        scene_check_region(reader, fail_format("elements[%d].fill.region", k), &group->region, false);
         char *path = fail_format("elements[%d].shape", k);
         if (is_given(reader, path) && !scene_issue_is_below(reader, path) && group->diameter[0] > group->diameter[1])
             scene_issue_on(reader, path, "min must not be above max");
@@ -65,7 +65,7 @@ static void check_walls(struct scene_reader *reader)
         const struct wall *wall = &reader->scene->wall[k];
         check_direction(reader, fail_format("walls[%d].surface.plane.normal", k), wall->normal);
         check_direction(reader, fail_format("walls[%d].surface.rectangle.normal", k), wall->normal);
-        check_box(reader, fail_format("walls[%d].surface.box", k), wall->min, wall->max);
+        check_box(reader, fail_format("walls[%d].surface.box", k), wall->min, wall->max, false);
         check_cylinder(reader, fail_format("walls[%d].surface.cylinder", k), wall->from, wall->to);
         check_direction(reader, fail_format("walls[%d].motion.rotation.axis", k), wall->rotation_axis);
         char *path = fail_format("walls[%d].motion", k), *remove = fail_format("%s.remove_at", path);
@@ -186,7 +186,7 @@ static void check_contacts(struct scene_reader *reader)
 static void check_domain(struct scene_reader *reader)
 {
     const struct domain *domain = &reader->scene->domain;
-    check_box(reader, fail_strdup("domain.box"), domain->min, domain->max);
+    check_box(reader, fail_strdup("domain.box"), domain->min, domain->max, false);
     if ((domain->periodic[0] || domain->periodic[1] || domain->periodic[2]) && !domain->has_box)
         scene_issue_on(reader, "domain.periodic", "needs 'box': what repeats must have an extent");
 }

@@ -52,8 +52,8 @@ static void check_bodies(struct scene_reader *reader)
 {
     for (int k = 0; k < reader->scene->n_body; k++) {
         const struct body *body = &reader->scene->body[k];
-        scene_check_region(reader, fail_format("bodies[%d].shape", k), &body->shape);
-        for (int m = 0; m < body->n_minus; m++) scene_check_region(reader, fail_format("bodies[%d].minus[%d]", k, m), &body->minus[m]);
+        scene_check_region(reader, fail_format("bodies[%d].shape", k), &body->shape, false);
+        for (int m = 0; m < body->n_minus; m++) scene_check_region(reader, fail_format("bodies[%d].minus[%d]", k, m), &body->minus[m], false);
     }
 }
 
@@ -77,7 +77,7 @@ static void check_boundary(struct scene_reader *reader, int k)
         bool prescribes = b->kind == BOUNDARY_VELOCITY || b->kind == BOUNDARY_ANGULAR_VELOCITY;
         if (prescribes && is_all_free(b)) scene_issue_on(reader, path, "all components are free");
     }
-    scene_check_region(reader, where, &b->where);
+    scene_check_region(reader, where, &b->where, true);
     free(fix);
     free(history);
     free(path);

@@ -21,8 +21,10 @@ static bool find_file(const struct scene_place *p, const struct scene_node *node
     else if (access(file, R_OK) != 0) problem = strerror(errno);
     *absolute = problem ? NULL : realpath(file, NULL);
     if (!problem && !*absolute) problem = strerror(errno);
-    *as_given = file;
-    if (!problem) return true;
+    if (!problem) {
+        *as_given = file;
+        return true;
+    }
     scene_issue_at(p->reader, node, p->path, "cannot read '%s': %s", file, problem);
     free(file);
     return false;
