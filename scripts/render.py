@@ -15,17 +15,40 @@ import subprocess
 import sys
 
 
+def numbers(n, separator, kind, is_good, what):
+    """Type of an option of n numbers; what: how it looks, for the message."""
+    def read(text):
+        try:
+            values = [kind(word) for word in text.split(separator)]
+        except ValueError:
+            values = []
+        if len(values) != n or not all(map(math.isfinite, values)) or not is_good(values):
+            raise argparse.ArgumentTypeError(f"'{text}': expected {what}")
+        return values
+    return read
+
+
+def frame_name(text):
+    if text not in ("first", "last") and not text.isdecimal():
+        raise argparse.ArgumentTypeError(f"'{text}': expected a number, first, or last")
+    return text
+
+
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("dir", metavar="DIR", help="folder of results")
-    parser.add_argument("--frame", metavar="N", help="one frame: its number, first, or last")
+    parser.add_argument("--frame", metavar="N", type=frame_name, help="one frame: its number, first, or last")
     parser.add_argument("--film", action="store_true", help="all frames as MP4 (needs ffmpeg)")
     parser.add_argument("--field", metavar="NAME", help="colour by this field; a vector by its magnitude (default: velocity)")
-    parser.add_argument("--range", metavar="LOW,HIGH", help="ends of the colour bar (default: from the frames)")
+    parser.add_argument("--range", metavar="LOW,HIGH", type=numbers(2, ",", float, lambda v: v[0] < v[1], "two numbers, as 0,1.5"),
+                        help="ends of the colour bar (default: from the frames)")
     parser.add_argument("--warp", metavar="FACTOR", type=float, help="magnify the displacements of a solid (default: to a twelfth of its size)")
-    parser.add_argument("--view", metavar="X,Y,Z", help="direction from which to look (default: along the thinnest extent, slightly turned)")
-    parser.add_argument("--size", metavar="WxH", help="pixels (default: 1600x1000, film 1280x720)")
-    parser.add_argument("--fps", type=float, help="frames of the film per second (default: a film of about 8 s, 5 to 25 per second)")
+    parser.add_argument("--view", metavar="X,Y,Z", type=numbers(3, ",", float, any, "a direction, as 1,0,0.5"),
+                        help="direction from which to look (default: along the thinnest extent, slightly turned)")
+    parser.add_argument("--size", metavar="WxH", type=numbers(2, "x", int, lambda v: min(v) >= 100, "pixels, as 1600x1000, at least 100 each"),
+                        help="pixels (default: 1600x1000, film 1280x720)")
+    parser.add_argument("--fps", type=numbers(1, None, float, lambda v: v[0] > 0, "a number above 0"),
+                        help="frames of the film per second (default: a film of about 8 s, 5 to 25 per second)")
     parser.add_argument("-o", metavar="FILE", dest="out", help="picture or film to write")
     return parser.parse_args()
 
@@ -217,12 +240,11 @@ class Picture:
         scene = frames.scene(options.dir)
         self.walls = scene.get("walls") or []
         self.end = max(frames.Frame(paths[-1]).time, 1e-12)
-        ends = tuple(float(v) for v in options.range.split(",")) if options.range else None
+        ends = options.range
         self.colours = Colours(samples, options.field, ends)
         warp = options.warp if options.warp is not None else magnification(samples)
         low, high = extent(samples, self.walls, warp)
-        towards = [float(v) for v in options.view.split(",")] if options.view else None
-        axes = view_axes(low, high, scene.get("gravity"), towards)
+        axes = view_axes(low, high, scene.get("gravity"), options.view)
         title = scene.get("title") or pathlib.Path(options.dir).resolve().name
         if any(frame.corners is not None for frame in samples):
             title += f" (displacements \u00d7 {warp:g})"
@@ -243,7 +265,7 @@ def write_film(options, paths, size):
         sys.exit("render: a film needs ffmpeg (scripts/setup installs it)")
     samples = [frames.Frame(path) for path in spread(paths, SAMPLES)]
     picture = Picture(options, paths, 1, samples, size, 1)
-    fps = options.fps or min(25, max(5, len(paths) / 8))
+    fps = options.fps[0] if options.fps else min(25, max(5, len(paths) / 8))
     out = options.out or os.path.join(options.dir, "film.mp4")
     command = ["ffmpeg", "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{size[0]}x{size[1]}", "-r", str(fps), "-i", "-",
                "-c:v", "libx264", "-preset", "veryfast", "-crf", "20", "-pix_fmt", "yuv420p", "-movflags", "+faststart", out]
@@ -290,7 +312,7 @@ def main(options):
     paths = frames.paths(options.dir)
     if not paths:
         sys.exit(f"render: no frames in {options.dir}")
-    size = [int(v) for v in (options.size or ("1280x720" if options.film else "1600x1000")).split("x")]
+    size = options.size or ([1280, 720] if options.film else [1600, 1000])
     size = [v - v % 2 for v in size]  # films want even numbers
     print(write_film(options, paths, size) if options.film else write_picture(options, paths, size))
 

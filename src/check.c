@@ -78,6 +78,10 @@ static void print_time(const struct scene *scene, const struct walls *walls, con
         printf("\ntime: %g s; `step: auto` finds no limit in this scene: give a value\n", time->end);
         return;
     }
+    if (!(time->end / dt <= SCENE_STEPS_MOST)) {
+        printf("\ntime: %g s; `step: auto` takes %.3g s, too many steps: give a value\n", time->end, dt);
+        return;
+    }
     printf("\ntime: %g s in %.0f steps of %.6g s, ", time->end, ceil(time->end / dt * (1 - 1e-12)), dt);
     if (time->step > 0) printf("as given\n");
     else printf("%g of the limit\n", time->safety);

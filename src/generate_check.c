@@ -141,9 +141,24 @@ static void check_coincidence(const struct scene *scene, const struct elements_h
     free(grid.next);
 }
 
+/* Of all images of a partner an element meets the nearest alone. Two of them can touch it, or it itself, where the period is shorter than this. */
+static void check_period(const struct scene *scene, const struct elements_host *e, struct scene_errors *errors)
+{
+    const struct domain *domain = &scene->domain;
+    double largest = 0;
+    for (int64_t i = 0; i < e->n; i++) largest = fmax(largest, 2 * e->radius[i]);
+    for (int a = 0; a < 3; a++) {
+        double length = domain->max[a] - domain->min[a];
+        if (domain->periodic[a] && length < 2 * largest)
+            scene_errors_add(errors, "%s: domain: periodic in %c over %g m, which has to be at least twice the largest diameter, %g m", scene->path,
+                "xyz"[a], length, largest);
+    }
+}
+
 void generate_check(const struct scene *scene, const struct elements_host *elements, struct scene_errors *errors)
 {
     check_domain(scene, elements, errors);
+    check_period(scene, elements, errors);
     check_coincidence(scene, elements, errors);
 }
 

@@ -105,5 +105,6 @@ _Noreturn void output_stop_numerics(struct sim *s, const char *what, ...)
 void output_close(struct sim *s, int exit_code)
 {
     measures_flush(s->output->measures);
-    record_write(s, exit_code, true);
+    if (!record_write(s, exit_code, true))
+        fail_stop_together(EXIT_NUMERICS, "step %lld, t = %.9g s: the last state holds NaN", (long long)s->step, (double)s->step * s->dt);
 }

@@ -168,14 +168,36 @@ static bool has_other_scene(const char *dir, const char *scene, size_t n_scene)
     return differs;
 }
 
+/* A CSV of the user's own, perhaps what the scene reads, that a series would overwrite; NULL: none. */
+static const char *other_series(const struct output_request *request)
+{
+    const char *found = NULL;
+    for (int k = 0; k < request->n_measure && !found; k++) {
+        char *name = fail_format("%s.csv", request->measure[k]);
+        if (exists(request->dir, name)) found = request->measure[k];
+        free(name);
+    }
+    return found;
+}
+
+/* What DIR holds that this run would destroy, or "". */
+static void find_others(const struct output_request *request, const char *scene, size_t n_scene, bool is_ours_already, char *what, size_t room)
+{
+    const char *series = other_series(request);
+    what[0] = '\0';
+    if (holds_results(request->dir)) snprintf(what, room, "results already");
+    else if (!is_ours_already && has_other_scene(request->dir, scene, n_scene)) snprintf(what, room, "another scene.yaml");
+    else if (!is_ours_already && series) snprintf(what, room, "a file %s.csv, the name of a measure", series);
+}
+
 static void create(const struct output_request *request, const char *scene, size_t n_scene, struct outcome *outcome)
 {
     const char *dir = request->dir;
     if (!make_folders(dir, outcome)) return;
-    bool has_results = holds_results(dir);
-    bool is_ours_already = has_results || exists(dir, "resolved.yaml"); /* the latter: a run that was killed before its first frame */
-    const char *why = has_results ? "results already" : !is_ours_already && has_other_scene(dir, scene, n_scene) ? "another scene.yaml" : NULL;
-    if (why && !request->force) {
+    bool is_ours_already = holds_results(dir) || exists(dir, "resolved.yaml"); /* the latter: a run that was killed before its first frame */
+    char why[300];
+    find_others(request, scene, n_scene, is_ours_already, why, sizeof why);
+    if (why[0] && !request->force) {
         outcome->code = EXIT_USAGE;
         snprintf(outcome->text, sizeof outcome->text, "'%s' holds %s; --force replaces, -o DIR writes elsewhere", dir, why);
         return;

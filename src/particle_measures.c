@@ -7,6 +7,7 @@
 
 #include "energy.h"
 #include "fail.h"
+#include "output.h"
 
 int particle_measure_columns(enum measure_kind kind, const struct series_column **column)
 {
@@ -107,6 +108,17 @@ static void measure_energy(struct sim *s, enum measure_kind kind, const struct e
     memcpy(value, all, sizeof all);
 }
 
+/* Energy from nowhere: the budget is off by more than half of all that has been turned over. The same on every rank. */
+static void check_energy(struct sim *s, const struct energy_sums *e)
+{
+    double wrong = fabs(energy_balance(&s->energy_start, e)), losses = e->dashpot_n + e->dashpot_t + e->sliding + e->rolling + e->bonds;
+    double all = e->kinetic + e->rotational + e->elastic + fabs(losses) + fabs(e->wall_work) + fabs(e->removed) +
+                 fabs(e->gravity - s->energy_start.gravity) + s->energy_start.kinetic + s->energy_start.rotational;
+    if (wrong <= 0.5 * all + 1e-9 * fabs(e->gravity)) return;
+    if (isnan(wrong)) output_stop_numerics(s, "the energy is not a number any more, or beyond measure; take a smaller time.step");
+    output_stop_numerics(s, "the energy runs away: the budget is off by %.3g J of %.3g J; take a smaller time.step", wrong, all);
+}
+
 void particle_measure(struct sim *s, const bool *due, double (*value)[MEASURE_COLUMNS])
 {
     struct particles_host *h = NULL;
@@ -120,6 +132,7 @@ void particle_measure(struct sim *s, const bool *due, double (*value)[MEASURE_CO
         if ((what->kind == MEASURE_ENERGY || what->kind == MEASURE_MOMENTUM) && !have_energy) {
             energy_now(s, &energy);
             have_energy = true;
+            if (what->kind == MEASURE_ENERGY) check_energy(s, &energy);
         }
         switch (what->kind) {
         case MEASURE_COUNT: measure_count(s, i, h, value[i]); break;

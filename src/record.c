@@ -76,7 +76,7 @@ static void add_plain_steps(struct report *r, const struct sim *s)
     report_end(r);
 }
 
-void record_write(struct sim *s, int exit_code, bool observed)
+bool record_write(struct sim *s, int exit_code, bool observed)
 {
     char digest[17] = "";
     static const char *const precision[] = {"double", "double", "mixed", "single"};
@@ -84,6 +84,7 @@ void record_write(struct sim *s, int exit_code, bool observed)
     uint64_t bits = 0;
     bool whole = observed && s->ops->digest(s, &bits);
     digest_text(bits, digest);
+    if (observed && !whole) exit_code = EXIT_NUMERICS;
     report_text(r, "version", DEMOCLES_VERSION);
     report_text(r, "git", DEMOCLES_GIT);
     char *hash = fail_format("%016lx", s->scene->hash);
@@ -118,4 +119,5 @@ void record_write(struct sim *s, int exit_code, bool observed)
     report_free(r);
     free(hash);
     if (!written && exit_code == EXIT_DONE) fail_stop(EXIT_IO, "run.json could not be written");
+    return whole || !observed;
 }

@@ -4,7 +4,8 @@
 
 #include "sim.h"
 
-/* Collective. `observed`: the state on the device is one of full steps, so that energies and the digest can be taken. */
-void record_write(struct sim *s, int exit_code, bool observed);
+/* Collective. `observed`: the state on the device is one of full steps, so that energies and the digest can be taken; if it then holds NaN, false is
+ * returned and the exit code in the record is EXIT_NUMERICS. */
+bool record_write(struct sim *s, int exit_code, bool observed);
 
 #endif

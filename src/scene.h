@@ -13,6 +13,9 @@ enum method { METHOD_PARTICLES, METHOD_LATTICE };
 enum scheme { SCHEME_LEAPFROG, SCHEME_RK4, SCHEME_RKN4, SCHEME_PEFRL, SCHEME_VEFRL }; /* in the order of enum lattice_scheme */
 enum precision { PRECISION_DEFAULT, PRECISION_DOUBLE, PRECISION_MIXED, PRECISION_SINGLE };
 
+/* More steps than this are no run but a mistake; all of them are whole numbers in double precision. */
+#define SCENE_STEPS_MOST 1e15
+
 struct scene_time {
     double end;          /* [s] */
     double step;         /* [s]; 0: auto */

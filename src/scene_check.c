@@ -196,8 +196,17 @@ static void check_scheme(struct scene_reader *reader)
     if (reader->scene->time.scheme != SCHEME_LEAPFROG) scene_issue_on(reader, "time.scheme", "particles take leapfrog alone");
 }
 
+static void check_time(struct scene_reader *reader)
+{
+    const struct scene_time *time = &reader->scene->time;
+    if (!is_given(reader, "time.step") || scene_issue_is_below(reader, "time") || !(time->step > 0)) return;
+    if (!(time->end / time->step <= SCENE_STEPS_MOST))
+        scene_issue_on(reader, "time.step", "%.3g steps until time.end are too many, at most %.0g", time->end / time->step, SCENE_STEPS_MOST);
+}
+
 void scene_check(struct scene_reader *reader)
 {
+    check_time(reader);
     if (reader->scene->method == METHOD_LATTICE) {
         scene_check_lattice(reader);
         return;

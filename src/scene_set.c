@@ -1,5 +1,6 @@
 /* --set KEY=VALUE: changes to the node tree of a scene before it is read, so that everything after treats them like the file's own text.
- * Mappings on the way are created; entries of lists are not. `null` as VALUE takes a key away. */
+ * Mappings on the way are created; entries of lists are not. `null` as VALUE takes a key or an entry of a
+ * list away. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -44,7 +45,11 @@ static void put(struct scene_node *node, const struct scene_step *step, struct s
     } else {
         int k = scene_path_follow(node, step);
         scene_yaml_free(node->item[k]);
-        node->item[k] = value;
+        if (scene_yaml_is_null(value)) {
+            scene_yaml_free(value);
+            node->n--;
+            for (; k < node->n; k++) node->item[k] = node->item[k + 1];
+        } else node->item[k] = value;
     }
 }
 

@@ -155,6 +155,10 @@ static bool has_more(yaml_parser_t *parser, struct scene_yaml_error *error)
 
 struct scene_node *scene_yaml_parse(const char *text, size_t length, int set, struct scene_yaml_error *error)
 {
+    if (length >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) { /* a byte order mark, as some editors write */
+        text += 3;
+        length -= 3;
+    }
     if (find_bad_character(text, length, error)) return NULL;
     yaml_parser_t parser;
     yaml_document_t document;

@@ -38,6 +38,8 @@ static void share_cores(struct sim *s)
 
 static void count_steps(struct sim *s)
 {
+    if (!(s->scene->time.end / s->dt <= SCENE_STEPS_MOST))
+        fail_stop_together(EXIT_SCENE, "%s: time.step: auto takes %.3g s, too many steps until time.end; give a value", s->scene->path, s->dt);
     s->n_step = (int64_t)ceil(s->scene->time.end / s->dt * (1 - 1e-12));
     if (s->options->n_step >= 0 && s->options->n_step < s->n_step) s->n_step = s->options->n_step;
 }

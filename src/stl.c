@@ -130,11 +130,21 @@ static char *read_ascii(const char *path, const char *text, struct soup *soup)
     return n_corner || !ended ? fail_format("%s:%d: the file is cut off: no 'endsolid'", path, line) : NULL;
 }
 
+/* Whether it holds nothing but text where a binary file has its count: of another format, or with something before `solid`. */
+static bool is_text(const unsigned char *data, size_t size)
+{
+    for (size_t k = 0; k < size && k < HEADER; k++)
+        if (data[k] < 0x20 && !strchr("\t\r\n", data[k])) return false;
+    return strnlen((const char *)data, HEADER) == (size < HEADER ? size : HEADER);
+}
+
 static char *read_soup(const char *path, const unsigned char *data, size_t size, struct soup *soup)
 {
     if (size >= HEADER && size == HEADER + (size_t)u32_at(data + 80) * RECORD) return read_binary(path, data, soup);
     if (size >= 5 && strncasecmp((const char *)data, "solid", 5) == 0 && strlen((const char *)data) == size)
         return read_ascii(path, (const char *)data, soup);
+    if (size > 0 && is_text(data, size) && strncasecmp((const char *)data, "solid", 5) != 0)
+        return fail_format("%s: no STL file: text that does not begin with 'solid'", path);
     if (size < HEADER) return fail_format("%s: neither ASCII nor binary STL: %zu bytes", path, size);
     size_t needed = HEADER + (size_t)u32_at(data + 80) * RECORD;
     return fail_format(

@@ -70,6 +70,22 @@ static void test_coincident_across_faces(void **unused)
     generate_free(e);
 }
 
+/* Two images of a partner, or of the element itself, must not be within reach. */
+static void test_short_period(void **unused)
+{
+    (void)unused;
+    struct domain domain = {.has_box = true, .periodic = {true, false, true}, .max = {5.9, 3, 6}};
+    struct scene_errors errors = {0};
+    assert_null(generate_from("x,y,z,radius\n1,1,1,1.5\n4,1,4,0.5\n", domain, &errors));
+    assert_int_equal(errors.n, 1);
+    scratch_expect(&errors, 0, "scene.yaml: domain: periodic in x over 5.9 m, which has to be at least twice the largest diameter, 3 m");
+    scene_errors_free(&errors);
+    domain.max[0] = 6;
+    struct elements_host *e = generate_from("x,y,z,radius\n1,1,1,1.5\n4,1,4,0.5\n", domain, &errors);
+    assert_non_null(e);
+    generate_free(e);
+}
+
 /* Twenty thousand times the same point: three are named, and it takes no time. */
 static void test_all_in_one_place(void **unused)
 {
@@ -172,7 +188,7 @@ static void test_in_a_moved_wall(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_coincident), cmocka_unit_test(test_coincident_at_random),
-        cmocka_unit_test(test_coincident_across_faces), cmocka_unit_test(test_all_in_one_place), cmocka_unit_test(test_outside_the_domain),
-        cmocka_unit_test(test_in_walls), cmocka_unit_test(test_in_a_moved_wall)};
+        cmocka_unit_test(test_coincident_across_faces), cmocka_unit_test(test_short_period), cmocka_unit_test(test_all_in_one_place),
+        cmocka_unit_test(test_outside_the_domain), cmocka_unit_test(test_in_walls), cmocka_unit_test(test_in_a_moved_wall)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

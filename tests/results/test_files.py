@@ -188,6 +188,14 @@ class Folders(Folder):
         self.assertEqual(run.returncode, 2)
         self.assertEqual(self.get("other/scene.yaml"), "title: of the user\n")
 
+    def test_somebody_elses_series_is_kept(self):
+        """It may be what the scene reads: a CSV with the name of a measure, in a folder without a run."""
+        self.put("data/outflow.csv", "mine")
+        run = tool(2, "folder", self.path("data"), self.scene)
+        self.assertEqual((run.returncode, len(errors(run))), (2, 1), run.stderr)
+        self.assertIn("holds a file outflow.csv, the name of a measure; --force", errors(run)[0])
+        self.assertEqual((os.listdir(self.path("data")), self.get("data/outflow.csv")), (["outflow.csv"], "mine"))
+
     def test_run_killed_before_its_first_frame_is_no_result(self):
         self.put("out/scene.yaml", "title: old\n")
         self.put("out/resolved.yaml", "title: old\n")

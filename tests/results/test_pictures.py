@@ -180,6 +180,13 @@ class Folder(unittest.TestCase):
             self.assertIn(says, run.stderr)
             self.assertNotIn("Traceback", run.stderr)
 
+    def test_options_that_are_no_numbers(self):
+        for option, value in (("--frame", "x"), ("--range", "1"), ("--range", "2,1"), ("--size", "10"), ("--size", "0x0"), ("--view", "0,0,0"),
+                              ("--view", "1,0,nan"), ("--fps", "-1")):
+            run = subprocess.run([SCRIPTS / "render.py", self.dir, f"{option}={value}"], capture_output=True, text=True)
+            self.assertEqual((run.returncode, run.stdout), (2, ""))
+            self.assertIn(f"error: argument {option}: '{value}': expected ", run.stderr)
+
     def test_plots(self):
         subprocess.run([TOOL, "record", self.dir], check=True, capture_output=True)
         (self.dir / "notes.csv").write_text("of the user,x\n1,2\n")

@@ -164,11 +164,21 @@ static void names_and_domain(void **state)
         "scene.yaml:5:11: measure[0]: missing key: one of 'count', 'energy', 'momentum', 'wall_force', 'probe'");
 }
 
+static void too_many_steps(void **state)
+{
+    struct fixture *f = *state;
+    fixture_expect_one(f, "method: particles\ntime: {end: 1e10, step: 1e-6}\nmaterials: {m: {density: 1}}\n" ONE,
+        "scene.yaml:2:25: time.step: 1e+16 steps until time.end are too many, at most 1e+15");
+    fixture_expect_one(f, "method: particles\ntime: {end: 1, step: 1e-320}\nmaterials: {m: {density: 1}}\n" ONE,
+        "scene.yaml:2:22: time.step: inf steps until time.end are too many, at most 1e+15");
+}
+
 static void no_scene_at_all(void **state)
 {
     struct fixture *f = *state;
     fixture_expect_one(f, "", "scene.yaml:1:1: there is nothing in it");
     fixture_expect_one(f, "# only a comment\n", "scene.yaml:1:1: there is nothing in it");
+    fixture_expect_one(f, "\xef\xbb\xbfhello\n", "scene.yaml:1:1: expected a mapping, found text");
     fixture_expect_one(f, "hello\n", "scene.yaml:1:1: expected a mapping, found text");
     fixture_expect_one(f, "a: 1\nb: \xff\n", "scene.yaml:2:4: not UTF-8 text (byte 0xff)");
     fixture_expect_one(f, "a: \x07\n", "scene.yaml:1:4: control character 0x07");
@@ -199,6 +209,7 @@ int main(void)
         TEST(hertz_needs_moduli),
         TEST(walls_and_regions),
         TEST(names_and_domain),
+        TEST(too_many_steps),
         TEST(no_scene_at_all),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

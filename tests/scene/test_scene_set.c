@@ -34,6 +34,18 @@ static void finds_entries_by_name(void **state)
     scene_free(s);
 }
 
+/* Entries behind it move up, for the changes after. */
+static void takes_entries_away(void **state)
+{
+    const char *const set[] = {"measure[0]=", "walls.gate=", "measure[0].every=5 ms"};
+    struct scene *s = read_with(*state, set, 3);
+    assert_int_equal(s->n_wall, 1);
+    assert_string_equal(s->wall[0].name, "funnel");
+    assert_string_equal(s->measure[0].name, "energy");
+    assert_true(s->measure[0].every == 5e-3);
+    scene_free(s);
+}
+
 static void creates_and_takes_away(void **state)
 {
     const char *const set[] = {
@@ -120,6 +132,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(changes_values),
         TEST(finds_entries_by_name),
+        TEST(takes_entries_away),
         TEST(creates_and_takes_away),
         TEST(the_last_one_counts),
         TEST(messages_name_the_option),

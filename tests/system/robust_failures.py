@@ -34,12 +34,24 @@ class Numerics(Failures):
             file.write("x,y,z,radius\n0,0,0,0.0025\n0.004999,0,0,0.0025\n")
         fall = parallel_scenes.scene(2000, 5e-4, contact, [parallel_scenes.block("balls", (0, 0, 0), (0.02, 0.02, 0.03), 0.005)],
                                      [parallel_scenes.box("room", (0, 0, 0), (0.02, 0.02, 0.1))])
+        fall["measure"] = []  # the budget of energy would find it first
         for ranks in (1, 3):
             for scene, when in ((pair, r"0, t = 0 s"), (fall, r"[1-9]\d*, t = \S+ s")):
                 run = self.fails(self.put(scene), ranks, 5, r"step " + when + r": the time step 0\.000[56] s is over its limit .* element \d+")
                 record = self.failed_record(run, 5)
                 self.assertGreater(record["dt"], record["dt_limit"])
                 self.whole(run.dir)
+
+    def test_energy_runs_away(self):
+        """The same, seen by the budget of energy long before numbers end."""
+        contact = {"normal": {**parallel_scenes.LINEAR, "damping_ratio": 0}}
+        room = [parallel_scenes.box("room", (0, 0, 0), (0.03, 0.03, 0.03))]
+        packed = parallel_scenes.scene(200, 1.5e-3, contact, [parallel_scenes.block("packed", (0, 0, 0), (0.03, 0.03, 0.03), 0.005,
+            velocity=(1, 1, 1))], room, observe=50)
+        packed["time"]["allow_unstable"] = True
+        for ranks in (1, 3):
+            run = self.fails(self.put(packed), ranks, 5, r"step 4, .*: the energy runs away: the budget is off by \S+ J of \S+ J")
+            self.failed_record(run, 5)
 
     def test_blow_up(self):
         """Some times the stable step: the run finds out by itself, and the frames until then stay."""
@@ -63,6 +75,15 @@ class Numerics(Failures):
                     self.failed_record(run, 5)
                 self.assertEqual(self.leftovers(run.dir), [])
                 self.assertGreater(self.whole(run.dir), 0)
+
+    def test_nan_in_the_last_step(self):
+        """Too few steps for the flags of the drift to be read: 1e-41 kg are no mass in single precision."""
+        dust = parallel_scenes.scene(3, 1e-5, {"normal": parallel_scenes.LINEAR}, [{"name": "dust", "file": "dust.csv", "velocity": [0, 0, 1]}])
+        dust["measure"], dust["precision"] = [], "single"
+        with open(os.path.join(self.dir, "dust.csv"), "w") as file:
+            file.write("x,y,z,radius\n0,0,0,1e-18\n0,0,0.1,0.001\n")
+        for ranks in (1, 3):
+            self.failed_record(self.fails(self.put(dust), ranks, 5, "step 3, t = 3e-05 s: the last state holds NaN"), 5)
 
     def test_lost_element(self):
         free = parallel_scenes.scene(10**4, 1e-4, {}, [parallel_scenes.block("free", (0, 0, 0), (0.02, 0.02, 0.02), 0.005, velocity=(1, 0, 0))],

@@ -61,7 +61,10 @@ static void test_refused(void **unused)
     make_binary(corner, 12, data);
     refuse(data, size, ": triangle 7: corner 2 is not finite");
     refuse(data, make_binary(corner, 0, data), ": no triangle");
-    refuse("abc", 3, ": neither ASCII nor binary STL: 3 bytes");
+    refuse("ab\1", 3, ": neither ASCII nor binary STL: 3 bytes");
+    refuse_text("abc", ": no STL file: text that does not begin with 'solid'");
+    refuse_text("v 500 500 500\nv 510 500 500\nv 500 510 500\nv 500 500 510\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n",
+        ": no STL file: text that does not begin with 'solid'");
     refuse("", 0, ": neither ASCII nor binary STL: 0 bytes");
     refuse_text("solid\nendsolid\n", ": no triangle");
     refuse_text("solid s\n" FACET("0 0 0", "1 0 0", "0 1 0"), ":9: the file is cut off: no 'endsolid'");
