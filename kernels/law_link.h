@@ -1,8 +1,8 @@
 /* One elastic link between two rigid cubes: six springs at the common face of cell i (lower coordinate) and cell j (higher), along axis a.
  *
- * Everything here is seen with axis a first: x, y, z of a vector stand for (a, b, c) cyclic, e = (1, 0, 0), until link_on_lower and link_on_upper turn
- * back. A link is always evaluated from lower to higher, so the two cells (and two ranks) that do so find the same bits, and each keeps its share:
- * force f on i, -f on j. Displacements, never positions: strains keep their digits in single precision.
+ * Everything here is seen with axis a first: x, y, z of a vector stand for (a, b, c) cyclic, e = (1, 0, 0), until link_on_lower and link_on_upper
+ * turn back. A link is always evaluated from lower to higher, so the two cells (and two ranks) that do so find the same bits, and each keeps its
+ * share: force f on i, -f on j. Displacements, never positions: strains keep their digits in single precision.
  *
  * Small rotations (WITH_TURN = 0), theta [rad]; linear, not objective:
  *     g = u_j - u_i - (h/2) (theta_i + theta_j) x e,   chi = theta_j - theta_i

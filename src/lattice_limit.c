@@ -11,8 +11,8 @@
 static const double undamped[] = {
     [LATTICE_LEAPFROG] = 2, [LATTICE_RK4] = 2.8284271, [LATTICE_RKN4] = 2.5865, [LATTICE_PEFRL] = 2.9894, [LATTICE_VEFRL] = 3.4696};
 
-/* RK4 on the curve z = w dt (-zeta +- i sqrt(1 - zeta^2)): the limit is above 2 sqrt(2) up to zeta = 0.3, has its minimum 2.615 at 0.54 and is 2.785 at
- * 1; beyond, the faster of the two real roots counts. Slower modes of a body with one eta have smaller zeta and w alike and stay inside. */
+/* RK4 on the curve z = w dt (-zeta +- i sqrt(1 - zeta^2)): the limit is above 2 sqrt(2) up to zeta = 0.3, has its minimum 2.615 at 0.54 and is 2.785
+ * at 1; beyond, the faster of the two real roots counts. Slower modes of a body with one eta have smaller zeta and w alike and stay inside. */
 static double damped_rk4(double zeta)
 {
     if (zeta <= 0.3) return undamped[LATTICE_RK4];

@@ -3,8 +3,8 @@
  *
  * One material without wall links, any shape (free surfaces, holes, broken links and fixed DOF only lower w_max):
  *     w_max^2 = 28 G/(rho h^2) up to lambda/G = 4.4305 (nu 0.408), 3 (lambda + 2 G)^2/(lambda rho h^2) above; LINK_SEED 72 E/(rho h^2)
- * from a scan of the Brillouin zone. Several materials, or walls: the largest of these is not safe (one soft cell among stiff ones has up to 1.4 times
- * its own). There, for any positive vector z,
+ * from a scan of the Brillouin zone. Several materials, or walls: the largest of these is not safe (one soft cell among stiff ones has up to 1.4
+ * times its own). There, for any positive vector z,
  *     w_max^2 <= max over the DOF k of (B z)_k/z_k,  B = M^-1 |K|
  * (Collatz and Wielandt), |K| entry by entry: the 6 x 6 diagonal blocks assembled with signs first, the volumetric part as |T|^T |D| |T|, Th = T u.
  * Replacing z by B z never raises the bound. A link that breaks later does not raise w_max. */

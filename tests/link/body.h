@@ -1,5 +1,5 @@
-/* A small body of cells, evaluated with the laws as a kernel would: each cell looks at its six faces and keeps its own share. The flags of the laws are
- * those of the executable. Its constants come from src/link_constants.h. */
+/* A small body of cells, evaluated with the laws as a kernel would: each cell looks at its six faces and keeps its own share. The flags of the laws
+ * are those of the executable. Its constants come from src/link_constants.h. */
 #ifndef DEMOCLES_LINK_BODY_H
 #define DEMOCLES_LINK_BODY_H
 

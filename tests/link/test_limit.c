@@ -1,5 +1,5 @@
-/* Limits of the time step: schemes against their own step matrices, closed forms against the published numbers, and the bound for mixed bodies against
- * eigenvalues of the law. */
+/* Limits of the time step: schemes against their own step matrices, closed forms against the published numbers, and the bound for mixed bodies
+ * against eigenvalues of the law. */
 #include "body.h"
 #include "tests/limit/jacobi.h"
 

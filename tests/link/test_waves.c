@@ -1,5 +1,5 @@
-/* Frequencies of the lattice in closed form: chains, Bloch waves along [100], [110], [111], and the largest one. A mode is put in, and the forces must
- * be -m w^2 u, -J w^2 theta. nu = 0.3 where the volumetric term is compiled in, else 0. */
+/* Frequencies of the lattice in closed form: chains, Bloch waves along [100], [110], [111], and the largest one. A mode is put in, and the forces
+ * must be -m w^2 u, -J w^2 theta. nu = 0.3 where the volumetric term is compiled in, else 0. */
 #include "body.h"
 
 static struct body body;
