@@ -140,10 +140,24 @@ static vec3 normal_of(const struct body *b, int i, int face)
     return v3_scale(sign, v3_of_p3(WITH_TURN ? p3_add(e, quat_column(b->q[i], face / 2)) : e));
 }
 
+/* Sum of the normal tractions on faces without link [Pa], and of their squares. */
+static real tractions_of(const struct body *b, int i, real *squares)
+{
+    real sum = 0;
+    *squares = 0;
+    for (int face = 0; face < 6; face++) {
+        if (has_link(b, i, face)) continue;
+        real t = v3_dot(b->traction[i][face], normal_of(b, i, face));
+        sum += t;
+        *squares += t * t;
+    }
+    return sum;
+}
+
 /* Th; of strains, or (rate) of their rates. */
 static real strain_of(const struct body *b, int i, int rate)
 {
-    real sum = 0, traction = 0;
+    real sum = 0, squares;
     int links = 0;
     for (int face = 0; face < 6; face++) {
         if (has_link(b, i, face)) {
@@ -152,11 +166,9 @@ static real strain_of(const struct body *b, int i, int rate)
             real stretch = rate ? link_normal_rate(s) : link_stretch(s, (real)material_of(b, i).damping);
             sum += volume_part(1, face & 1 ? l.k.r_i : l.k.r_j, stretch);
             links |= 1 << face;
-        } else if (!rate) {
-            traction += v3_dot(b->traction[i][face], normal_of(b, i, face));
         }
     }
-    return volume_strain(sum, traction, links, volume_of(b, i));
+    return volume_strain(sum, rate ? 0 : tractions_of(b, i, &squares), links, volume_of(b, i));
 }
 
 /* Share of cell i over `face`: of the link, or of the load. */
@@ -213,8 +225,8 @@ static double total(const struct body *b, int rate)
             sum += (double)(rate ? link_dissipation(s, l.k) : link_energy(s, l.k));
         }
         if (!WITH_VOLUME) continue;
-        real strain = strain_of(b, i, rate);
-        double energy = (double)volume_energy(strain, 0, 0, links, volume_of(b, i)); /* without tractions */
+        real squares, traction = tractions_of(b, i, &squares), strain = strain_of(b, i, rate);
+        double energy = (double)volume_energy(strain, rate ? 0 : traction, rate ? 0 : squares, links, volume_of(b, i));
         sum += rate ? 2 * material_of(b, i).damping * energy : energy;
     }
     return sum;

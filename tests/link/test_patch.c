@@ -94,8 +94,28 @@ static void uniaxial(void **state)
     }
 }
 
+/* Principal stresses along the grid: the energy is that of the continuum, S:eps/2 per volume, with the halves of the cells behind loaded faces. */
+static void energy(void **state)
+{
+    const double S[3][3] = {{0.01, 0, 0}, {0, -0.02, 0}, {0, 0, 0.03}}, h = 0.5, nu = 0.3;
+    const int size[3] = {5, 4, 4};
+    double trace = S[0][0] + S[1][1] + S[2][2], density = 0, eps[3];
+    (void)state;
+    if (!WITH_VOLUME) skip();
+    body_build(&body, size, rough, 0, h);
+    body.materials[0].poisson = nu;
+    for (int a = 0; a < 3; a++) {
+        eps[a] = (1 + nu) * S[a][a] - nu * trace; /* E = 1 */
+        density += 0.5 * S[a][a] * eps[a];
+    }
+    for (int i = 0; i < body.n; i++)
+        body.u[i] = p3((preal)(eps[0] * h * body.at[i][0]), (preal)(eps[1] * h * body.at[i][1]), (preal)(eps[2] * h * body.at[i][2]));
+    body_load(&body, S);
+    assert_near(body_energy(&body) / (density * h * h * h * body.n), 1, 200 * BODY_EPS);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(strong), cmocka_unit_test(uniaxial)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(strong), cmocka_unit_test(uniaxial), cmocka_unit_test(energy)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
