@@ -1,7 +1,8 @@
 /* Where a rank has its cells: in runs along x, for kernels/lattice_view.h.
  *
  * A run is `run` places on the grid, aligned on it: run (grid, z, y, x/run). A rank has all runs with a cell that it owns or needs as a ghost,
- * sorted, so that the neighbour in x is the next in memory; one empty run in front and one behind, and in place of every neighbouring run that is not there.
+ * sorted, so that the neighbour in x is the next in memory; one empty run in front and one behind, the first also in place of every neighbouring run
+ * that is not there.
  * Index of a cell: run times length, plus lane. Host only; knows owners, no device and no MPI. */
 #ifndef DEMOCLES_LATTICE_LAYOUT_H
 #define DEMOCLES_LATTICE_LAYOUT_H

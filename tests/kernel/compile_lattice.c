@@ -1,5 +1,5 @@
-/* compile_lattice lattice PRECISION small|turn [volume] [rk4]: one step of a small block, so that the driver compiles its kernels. Leaves with 77 where
- * the platform is not pocl or has no doubles. */
+/* compile_lattice lattice PRECISION small|turn [volume] [rk4]: one step of a small block, so that the driver compiles its kernels. Leaves with 77
+ * where the platform is not pocl or has no doubles. */
 #include <stdio.h>
 #include <string.h>
 

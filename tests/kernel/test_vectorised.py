@@ -36,7 +36,8 @@ def vector_bytes():
 def remarks(kernel, precision, features):
     with tempfile.TemporaryDirectory() as cache:
         environment = dict(os.environ, POCL_VECTORIZER_REMARKS="1", POCL_CACHE_DIR=cache)
-        done = subprocess.run([sys.argv[2 if kernel == "lattice" else 1], kernel, precision, *features], env=environment, capture_output=True, text=True)
+        program = sys.argv[2 if kernel == "lattice" else 1]
+        done = subprocess.run([program, kernel, precision, *features], env=environment, capture_output=True, text=True)
     if done.returncode == 77:
         print(done.stdout.strip() + ": not pocl, or no doubles")
         sys.exit(77)
