@@ -131,7 +131,7 @@ void lattice_method_frame(struct sim *s, int64_t index)
     shown_fields(s, t, &shown);
     add(&state, "id", "1", "global id", COLUMN_I64, 1, t->gid);
     add(&state, "displacement", "m", "displacement of the centre", COLUMN_F64, 3, t->u);
-    add(&state, "rotation", t->turn_width == 4 ? "1" : "rad", "quaternion w, x, y, z, or small rotation about x, y, z, and 0", COLUMN_F64, 4, t->turn);
+    add(&state, "rotation", t->turn_width == 4 ? "1" : "rad", "quaternion w, x, y, z, or a small rotation and 0", COLUMN_F64, 4, t->turn);
     add(&state, "velocity", "m/s", "velocity of the centre", COLUMN_F64, 3, t->v);
     add(&state, "angular_velocity", "rad/s", "angular velocity", COLUMN_F64, 3, t->w);
     struct table table = {"cells", t->n, state.column, state.n};

@@ -105,10 +105,11 @@ static void check_limit(struct sim *s)
     uint64_t unused;
     s->limit_at = s->step;
     if (s->dt > s->dt_limit && !s->scene->time.allow_unstable)
-        output_stop_numerics(s, "the time step %.4g s is over its limit %.4g s; take a smaller time.step, or set time.allow_unstable", s->dt, s->dt_limit);
+        output_stop_numerics(
+            s, "the time step %.4g s is over its limit %.4g s; take a smaller time.step, or set time.allow_unstable", s->dt, s->dt_limit);
     if (!digest(s, &unused))
-        output_stop_numerics(s, "displacements or velocities are not numbers any more; the time step %.4g s is %.3g of its limit", s->dt,
-            s->dt / s->dt_limit);
+        output_stop_numerics(
+            s, "displacements or velocities are not numbers any more; the time step %.4g s is %.3g of its limit", s->dt, s->dt / s->dt_limit);
 }
 
 static int64_t number(const struct sim *s)
@@ -128,7 +129,8 @@ static void count(const struct sim *s, int64_t *n_interaction, int64_t *halo_byt
 
 static void report_features(const struct sim *s, struct report *r)
 {
-    for (int i = 0; lattice_features_name(i); i++) report_integer(r, lattice_features_name(i), lattice_features_value(&s->solid->lattice->features, i));
+    const struct lattice_features *f = &s->solid->lattice->features;
+    for (int i = 0; lattice_features_name(i); i++) report_integer(r, lattice_features_name(i), lattice_features_value(f, i));
 }
 
 static void report_energy(struct sim *s, struct report *r, bool observed)

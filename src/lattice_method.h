@@ -16,9 +16,9 @@ struct lattice_run {
 /* The observed state of this rank's cells on the host, and where their centres were at the start; [n] in ascending id. */
 struct lattice_state {
     int64_t n;
-    const int64_t *gid; /* borrowed */
+    const int64_t *gid;                                         /* borrowed */
     double (*centre)[3], (*u)[3], (*turn)[4], (*v)[3], (*w)[3]; /* [m], [m], see below, [m/s], [rad/s] */
-    int turn_width; /* 4: turn is a quaternion w, x, y, z; 3: a small rotation [rad], the fourth is 0 */
+    int turn_width;                                             /* 4: turn is a quaternion w, x, y, z; 3: a small rotation [rad], the fourth is 0 */
 };
 struct lattice_state *lattice_state_create(const struct sim *s);
 void lattice_state_free(struct lattice_state *state); /* NULL is fine */
