@@ -27,8 +27,12 @@ def number(value):
     return float("inf") if value in ("never", "none") else float(value)
 
 
+HEXAHEDRON = 12  # VTK's number
+
+
 class Frame:
-    """One frame. `points` [n][3] [m], `time` [s], `names` of the fields."""
+    """One frame. `points` [n][3] [m]: centres of the elements, or of the cells of a solid; `time` [s], `names` of the fields. Of a solid also
+    `corners` and `displacement` of the corners [n][8][3] [m], the former at the start; else `corners` is None."""
 
     def __init__(self, path):
         self.path = str(path)
@@ -44,23 +48,36 @@ class Frame:
         else:
             self.points = vtk_to_numpy(points.GetData())
         self.time = time.GetValue(0) if time else 0.0
-        self._field = {data.GetArrayName(k): vtk_to_numpy(data.GetArray(k)) for k in range(data.GetNumberOfArrays())}
+        self._field, self.corners = _arrays(data), None
+        if grid.GetNumberOfCells() and grid.GetCellType(0) == HEXAHEDRON:
+            self.corners, self.displacement = self.points.reshape(-1, 8, 3), self._field["displacement"].reshape(-1, 8, 3)
+            self.points = (self.corners + self.displacement).mean(axis=1)
+            self._field = {"displacement": self.displacement.mean(axis=1), **_arrays(grid.GetCellData())}
         self.names = list(self._field)
 
     def field(self, name):
         """[n] or [n][width]; a field that is not drawn but part of the state is found too."""
         if name in self._field:
             return self._field[name]
-        values = _dataset(self.path, "democles/elements/" + name)
+        values = _dataset(self.path, f"democles/{self._table()}/{name}")
         if values is None:
             raise SystemExit(f"{self.path}: no field '{name}'; there are: {', '.join(self.names)}")
         return values
 
     def unit(self, name):
         """m/s, or nothing for a pure number."""
-        place = "VTKHDF/PointData/" if name in self._field else "democles/elements/"
+        shown = "VTKHDF/PointData/" if self.corners is None or name == "displacement" else "VTKHDF/CellData/"
+        place = shown if name in self._field else f"democles/{self._table()}/"
         unit = _attribute(self.path, place + name, "unit")
         return "" if unit == "1" else unit
+
+
+    def _table(self):
+        return "elements" if self.corners is None else "cells"
+
+
+def _arrays(data):
+    return {data.GetArrayName(k): vtk_to_numpy(data.GetArray(k)) for k in range(data.GetNumberOfArrays())}
 
 
 def _library():

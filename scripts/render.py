@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Pictures and films of a run: elements as spheres coloured by a field, walls as glass.
+"""Pictures and films of a run: elements as spheres coloured by a field, walls as glass; a solid with its displacements magnified.
 
     scripts/render.py DIR                    DIR/overview.png: up to four moments of the run side by side
     scripts/render.py DIR --frame last       DIR/frame_000123.png: one frame, by number, `first` or `last`
@@ -42,6 +42,7 @@ def arguments():
     parser.add_argument("--field", metavar="NAME", help="colour by this field; a vector by its magnitude (default: velocity)")
     parser.add_argument("--range", metavar="LOW,HIGH", type=numbers(2, ",", float, lambda v: v[0] < v[1], "two numbers, as 0,1.5"),
                         help="ends of the colour bar (default: from the frames)")
+    parser.add_argument("--warp", metavar="FACTOR", type=float, help="magnify the displacements of a solid (default: to a twelfth of its size)")
     parser.add_argument("--view", metavar="X,Y,Z", type=numbers(3, ",", float, any, "a direction, as 1,0,0.5"),
                         help="direction from which to look (default: along the thinnest extent, slightly turned)")
     parser.add_argument("--size", metavar="WxH", type=numbers(2, "x", int, lambda v: min(v) >= 100, "pixels, as 1600x1000, at least 100 each"),
@@ -93,7 +94,8 @@ class Colours:
 
     def __init__(self, samples, name, ends):
         names = samples[0].names
-        self.name = name or ("velocity" if "velocity" in names else (names or ["radius"])[0])
+        preferred = [n for n in ("von_mises", "velocity") if n in names] + names + ["radius"]
+        self.name = name or preferred[0]
         values = [self.of(frame) for frame in samples if len(frame.points)] or [numpy.zeros(1)]
         everything = numpy.concatenate(values)
         everything = everything[numpy.isfinite(everything)]
@@ -130,11 +132,25 @@ class Colours:
         return f"{name} [{self.unit}]" if self.unit else name
 
 
-def extent(samples, walls):
+def magnification(samples):
+    """Round factor that makes the largest displacement of a solid a twelfth of its size."""
+    solids = [frame for frame in samples if frame.corners is not None]
+    largest = max((numpy.linalg.norm(frame.displacement, axis=2).max() for frame in solids), default=0)
+    if not largest > 0:
+        return 1.0
+    size = max(numpy.ptp(solids[0].corners.reshape(-1, 3), axis=0))
+    power = 10.0 ** math.floor(math.log10(size / 12 / largest))
+    return max(m * power for m in (1, 2, 5) if m * power <= size / 12 / largest)
+
+
+def extent(samples, walls, warp):
     """Lowest and highest corner of all that has an end: elements of the sampled frames, and walls."""
     low, high = numpy.full(3, numpy.inf), numpy.full(3, -numpy.inf)
     for frame in samples:
-        if len(frame.points):
+        if frame.corners is not None:
+            placed = (frame.corners + warp * frame.displacement).reshape(-1, 3)
+            low, high = numpy.minimum(low, placed.min(axis=0)), numpy.maximum(high, placed.max(axis=0))
+        elif len(frame.points):
             r = frame.field("radius")[:, None]
             low, high = numpy.minimum(low, (frame.points - r).min(axis=0)), numpy.maximum(high, (frame.points + r).max(axis=0))
         for wall in walls:
@@ -226,12 +242,15 @@ class Picture:
         self.end = max(frames.Frame(paths[-1]).time, 1e-12)
         ends = options.range
         self.colours = Colours(samples, options.field, ends)
-        low, high = extent(samples, self.walls)
+        warp = options.warp if options.warp is not None else magnification(samples)
+        low, high = extent(samples, self.walls, warp)
         axes = view_axes(low, high, scene.get("gravity"), options.view)
         title = scene.get("title") or pathlib.Path(options.dir).resolve().name
+        if any(frame.corners is not None for frame in samples):
+            title += f" (displacements \u00d7 {warp:g})"
         self.layout = Layout(*size, n, title, self.colours, axes, low, high)
         colour_table = self.colours.map()(numpy.linspace(0, 1, self.colours.levels))
-        self.view = View(self.layout.panel, sharpness, axes, (low, high), self.layout.pixels_per_metre, self.walls, colour_table)
+        self.view = View(self.layout.panel, sharpness, axes, (low, high), self.layout.pixels_per_metre, self.walls, colour_table, warp)
 
     def draw(self, chosen):
         for k, frame in enumerate(chosen):

@@ -1,4 +1,4 @@
-"""One view of elements and walls by VTK, without any text: parallel projection, so that all panels and frames have one scale."""
+"""One view of elements or a solid, and walls by VTK, without any text: parallel projection, so that all panels and frames have one scale."""
 import numpy
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401 (chooses OpenGL)
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
@@ -48,11 +48,22 @@ def single_points(n):
     return cells
 
 
-class View:
-    """draw() gives [height][width][3] bytes. `sharpness` times as many pixels are drawn and averaged."""
+FACES = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))  # of a hexahedron, corners in VTK's order
 
-    def __init__(self, panel, sharpness, axes, box, pixels_per_metre, walls, colours):
-        self.panel, self.sharpness = panel, sharpness
+
+def faces_of(n):
+    """The six faces of n hexahedra with eight points each."""
+    ids = (8 * numpy.arange(n, dtype=numpy.int64)[:, None, None] + numpy.array(FACES, numpy.int64)).reshape(-1)
+    cells = vtkCellArray()
+    cells.SetData(*(numpy_to_vtkIdTypeArray(a, deep=True) for a in (numpy.arange(0, len(ids) + 1, 4, dtype=numpy.int64), ids)))
+    return cells
+
+
+class View:
+    """draw() gives [height][width][3] bytes. `sharpness` times as many pixels are drawn and averaged. warp: factor on a solid's displacements."""
+
+    def __init__(self, panel, sharpness, axes, box, pixels_per_metre, walls, colours, warp):
+        self.panel, self.sharpness, self.warp = panel, sharpness, warp
         self.renderer, self.window = vtkRenderer(), vtkRenderWindow()
         self.renderer.SetBackground(1, 1, 1)
         self.renderer.UseFXAAOn()
@@ -72,18 +83,24 @@ class View:
         table.SetNumberOfTableValues(len(colours))
         for k, colour in enumerate(colours):
             table.SetTableValue(k, *colour)
-        self.elements, self.mapper, self.actor = vtkPolyData(), vtkOpenGLSphereMapper(), vtkActor()
-        self.mapper.SetInputData(self.elements)
-        self.mapper.SetLookupTable(table)
-        self.mapper.SetUseLookupTableScalarRange(0)
-        self.mapper.SetScaleArray("radius")
-        self.actor.SetMapper(self.mapper)
-        look = self.actor.GetProperty()
+        spheres = vtkOpenGLSphereMapper()
+        spheres.SetScaleArray("radius")
+        self.elements, self.solid = (self.add_body(mapper, table) for mapper in (spheres, vtkPolyDataMapper()))
+
+    def add_body(self, mapper, table):
+        """(data, mapper, actor) of what has colours."""
+        data, actor = vtkPolyData(), vtkActor()
+        mapper.SetInputData(data)
+        mapper.SetLookupTable(table)
+        mapper.SetUseLookupTableScalarRange(0)
+        actor.SetMapper(mapper)
+        look = actor.GetProperty()
         look.SetAmbient(0.3)
         look.SetDiffuse(0.8)
         look.SetSpecular(0.12)
         look.SetSpecularPower(25)
-        self.renderer.AddActor(self.actor)
+        self.renderer.AddActor(actor)
+        return data, mapper, actor
 
     def add_wall(self, wall, low, high):
         """Glass, and its edges; both move together. Nothing for what cannot be drawn."""
@@ -126,20 +143,31 @@ class View:
         camera.SetParallelScale(self.panel[1] / pixels_per_metre / 2)
         camera.SetClippingRange(0.5 * depth, 3.5 * depth)
 
-    def draw(self, frame, values, ends):
+    def place(self, body, at, cells, arrays, ends):
+        """Gives a body its points, cells and arrays (by name; the last one colours)."""
+        data, mapper, actor = body
         points = vtkPoints()
-        points.SetData(numpy_to_vtk(numpy.ascontiguousarray(frame.points, numpy.float32), deep=True))
-        self.elements.Initialize()
-        self.elements.SetPoints(points)
-        self.elements.SetVerts(single_points(len(frame.points)))
-        self.actor.SetVisibility(len(frame.points) > 0)
-        if len(frame.points):
-            for name, array in (("radius", frame.field("radius")), ("colour", values)):
-                data = numpy_to_vtk(numpy.ascontiguousarray(array, numpy.float32), deep=True)
-                data.SetName(name)
-                self.elements.GetPointData().AddArray(data)
-            self.elements.GetPointData().SetActiveScalars("colour")
-            self.mapper.SetScalarRange(*ends)
+        points.SetData(numpy_to_vtk(numpy.ascontiguousarray(at, numpy.float32), deep=True))
+        data.Initialize()
+        data.SetPoints(points)
+        data.SetVerts(cells) if data is self.elements[0] else data.SetPolys(cells)
+        fields = data.GetPointData() if data is self.elements[0] else data.GetCellData()
+        for name, array in arrays:
+            values = numpy_to_vtk(numpy.ascontiguousarray(array, numpy.float32), deep=True)
+            values.SetName(name)
+            fields.AddArray(values)
+            fields.SetActiveScalars(name)
+        mapper.SetScalarRange(*ends)
+
+    def draw(self, frame, values, ends):
+        n, is_solid = len(frame.points), frame.corners is not None
+        self.elements[2].SetVisibility(n > 0 and not is_solid)
+        self.solid[2].SetVisibility(is_solid)
+        if is_solid:
+            at = (frame.corners + self.warp * frame.displacement).reshape(-1, 3)
+            self.place(self.solid, at, faces_of(n), [("colour", numpy.repeat(values, len(FACES)))], ends)
+        elif n:
+            self.place(self.elements, frame.points, single_points(n), [("radius", frame.field("radius")), ("colour", values)], ends)
         for wall, actors in self.walls:
             for actor in actors:
                 actor.SetVisibility(render_walls.is_there(wall, frame.time))

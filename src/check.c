@@ -13,12 +13,13 @@
 /* Listed pairs per element of a dense packing with the usual skin: half of 8 to 10 neighbours. */
 static const double dense_pairs = 4.5;
 
-static void print_head(const struct scene *scene)
+void check_head(const struct scene *scene)
 {
     static const char *const precision[] = {
         [PRECISION_DEFAULT] = "double", [PRECISION_DOUBLE] = "double", [PRECISION_MIXED] = "mixed", [PRECISION_SINGLE] = "single"};
+    const char *method = scene->method == METHOD_LATTICE ? "lattice" : "particles";
     printf("%s\n", scene->title && *scene->title ? scene->title : scene->name);
-    printf("    %s: particles in %s precision, hash %016lx\n", scene->path, precision[scene->precision], scene->hash);
+    printf("    %s: %s in %s precision, hash %016lx\n", scene->path, method, precision[scene->precision], scene->hash);
     printf("    gravity (%g, %g, %g) m/s2", scene->gravity[0], scene->gravity[1], scene->gravity[2]);
     for (int a = 0; a < 3; a++)
         if (scene->domain.periodic[a]) printf(", periodic in %c over %g m", "xyz"[a], scene -> domain.max[a] - scene->domain.min[a]);
@@ -94,7 +95,7 @@ static void print_time(const struct scene *scene, const struct walls *walls, con
     scene_errors_free(&warnings);
 }
 
-static void print_output(const struct scene *scene)
+void check_output(const struct scene *scene)
 {
     const struct output *output = &scene->output;
     printf("\noutput: frames at the start, at the end");
@@ -103,29 +104,34 @@ static void print_output(const struct scene *scene)
     for (int k = 0; k < scene->n_measure; k++) printf("    %s.csv every %g s\n", scene->measure[k].name, scene->measure[k].every);
 }
 
-static void print_features(const struct features *features)
+void check_features(const char *(*name)(int), bool (*value)(const void *, int), const void *features)
 {
     for (int in = 1; in >= 0; in--) {
         int column = printf("%sfeatures %s:", in ? "\n" : "", in ? "in" : "out");
-        for (int k = 0; features_name(k); k++) {
-            if (features_value(features, k) != in) continue;
+        for (int k = 0; name(k); k++) {
+            if (value(features, k) != in) continue;
             if (column > 100) column = printf("\n   ");
-            column += printf(" %s", features_name(k));
+            column += printf(" %s", name(k));
         }
         printf("\n");
     }
 }
 
+static bool feature_value(const void *features, int k)
+{
+    return features_value(features, k);
+}
+
 static void print_all(const struct scene *scene, const struct walls *walls, const struct elements_host *elements)
 {
     struct features features = features_of(scene, walls, elements);
-    print_head(scene);
+    check_head(scene);
     print_elements(scene, elements);
     print_walls(scene, walls);
     check_contacts(scene, elements);
     print_time(scene, walls, elements);
-    print_output(scene);
-    print_features(&features);
+    check_output(scene);
+    check_features(features_name, feature_value, &features);
     double per_element = check_element_bytes(&features), per_pair = check_pair_bytes(&features);
     printf("\nmemory on the devices: %.0f bytes per element and %.0f per listed pair; %.1f MiB with %.2g pairs per element, as in a dense packing\n",
         per_element, per_pair, (per_element + dense_pairs * per_pair) * (double)elements->n / 1048576, dense_pairs);
@@ -133,6 +139,7 @@ static void print_all(const struct scene *scene, const struct walls *walls, cons
 
 int check_scene(const struct comm *comm, const struct scene *scene, bool resolved)
 {
+    if (scene->method == METHOD_LATTICE) return check_lattice(comm, scene, resolved);
     struct scene_errors errors = {0};
     struct walls *walls = NULL;
     struct elements_host *elements = NULL;

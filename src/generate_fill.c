@@ -4,7 +4,7 @@
  * overlap, whatever the random numbers are. Costs one test per site; with gravity along an axis, only up to the layer where `count` is reached. */
 #include "fail.h"
 #include "generate_parts.h"
-#include "solid.h"
+#include "region.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -30,67 +30,13 @@ static double random_at(uint64_t seed, uint64_t site, uint64_t stream)
 
 struct fill {
     const struct element_group *group;
-    struct stl *stl; /* region of that kind */
-    struct solid *solid;
-    double low[3], high[3];    /* bounds of the region [m] */
+    struct region_shape shape;
     double spacing, origin[3]; /* first site [m] */
     int64_t sites[3];
-    double axis[3], length; /* of a cylinder: unit vector, [m] */
-    double up[3];           /* unit vector against gravity */
-    int layers_along;       /* axis nearest to it */
-    bool is_straight;       /* gravity is along that axis */
+    double up[3];     /* unit vector against gravity */
+    int layers_along; /* axis nearest to it */
+    bool is_straight; /* gravity is along that axis */
 };
-
-static bool lies_within(const struct fill *fill, const double x[3], double r)
-{
-    const struct region *region = &fill->group->region;
-    double need = r * (1 - slack);
-    if (region->kind == REGION_BOX) {
-        for (int a = 0; a < 3; a++)
-            if (x[a] - need < region->min[a] || x[a] + need > region->max[a]) return false;
-        return true;
-    }
-    if (region->kind == REGION_STL) return solid_contains(fill->solid, x) && solid_distance(fill->solid, x, r) >= need;
-    double along = 0, square = 0;
-    for (int a = 0; a < 3; a++) along += (x[a] - region->from[a]) * fill->axis[a];
-    for (int a = 0; a < 3; a++) {
-        double across = x[a] - region->from[a] - along * fill->axis[a];
-        square += across * across;
-    }
-    return along >= need && along <= fill->length - need && sqrt(square) + need <= region->radius;
-}
-
-/* Reads the STL of such a region and finds the bounds of any. A text if it cannot be used, which the caller frees. */
-static char *open_region(struct fill *fill)
-{
-    const struct region *region = &fill->group->region;
-    char *text = NULL;
-    if (region->kind == REGION_BOX) {
-        memcpy(fill->low, region->min, sizeof fill->low);
-        memcpy(fill->high, region->max, sizeof fill->high);
-        return NULL;
-    }
-    if (region->kind == REGION_CYLINDER) {
-        for (int a = 0; a < 3; a++) fill->axis[a] = region->to[a] - region->from[a];
-        fill->length = sqrt(fill->axis[0] * fill->axis[0] + fill->axis[1] * fill->axis[1] + fill->axis[2] * fill->axis[2]);
-        if (!(fill->length > 0)) return fail_format("the region's cylinder has no length");
-        for (int a = 0; a < 3; a++) {
-            fill->axis[a] /= fill->length;
-            double reach = region->radius * sqrt(fmax(0, 1 - fill->axis[a] * fill->axis[a]));
-            fill->low[a] = fmin(region->from[a], region->to[a]) - reach;
-            fill->high[a] = fmax(region->from[a], region->to[a]) + reach;
-        }
-        return NULL;
-    }
-    fill->stl = stl_read(region->stl, region->scale, &text);
-    if (!fill->stl) return text;
-    if (!stl_is_closed(fill->stl))
-        return fail_format("%s: a region needs a closed surface with triangles that all face one way: %d of its %d edges do not match", region->stl,
-            fill->stl->n_open, fill->stl->n_edge);
-    fill->solid = solid_create(fill->stl);
-    solid_bounds(fill->solid, fill->low, fill->high);
-    return NULL;
-}
 
 static void find_up(struct fill *fill, const double gravity[3])
 {
@@ -108,11 +54,11 @@ static void place_lattice(struct fill *fill)
 {
     fill->spacing = (1 + fill->group->jitter) * fill->group->diameter[1];
     for (int a = 0; a < 3; a++) {
-        double length = fill->high[a] - fill->low[a];
+        double length = fill->shape.high[a] - fill->shape.low[a];
         fill->sites[a] = (int64_t)fmax(0, floor(length / fill->spacing + slack));
         double rest = length - (double)fill->sites[a] * fill->spacing, share = 0.5;
         if (a == fill->layers_along && fill->is_straight) share = fill->up[a] > 0 ? 0 : 1;
-        fill->origin[a] = fill->low[a] + share * rest + 0.5 * fill->spacing;
+        fill->origin[a] = fill->shape.low[a] + share * rest + 0.5 * fill->spacing;
     }
 }
 
@@ -135,7 +81,7 @@ static bool make_site(const struct fill *fill, const int64_t ijk[3], struct site
         site->x[a] = point + (2 * random_at(seed, number, (uint64_t)a) - 1) * 0.5 * group->jitter * group->diameter[1];
         site->height += point * fill->up[a];
     }
-    return lies_within(fill, site->x, site->radius);
+    return region_holds(&fill->shape, site->x, site->radius * (1 - slack));
 }
 
 struct sites {
@@ -175,7 +121,7 @@ void generate_fill(struct generate_list *list, const struct scene *scene, int gr
     struct fill fill = {.group = of};
     struct sites sites = {0};
     size_t count = (size_t)of->count;
-    char *text = open_region(&fill);
+    char *text = region_open(&fill.shape, &of->region);
     if (!text) {
         find_up(&fill, scene->gravity);
         place_lattice(&fill);
@@ -190,6 +136,5 @@ void generate_fill(struct generate_list *list, const struct scene *scene, int gr
     }
     free(text);
     free(sites.site);
-    solid_free(fill.solid);
-    stl_free(fill.stl);
+    region_close(&fill.shape);
 }

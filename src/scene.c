@@ -6,6 +6,26 @@
 
 #include "fail.h"
 
+static void free_words(char **word, int n)
+{
+    for (int k = 0; k < n; k++) free(word[k]);
+    free(word);
+}
+
+static void free_bodies(struct scene *scene)
+{
+    for (int k = 0; k < scene->n_body; k++) {
+        struct body *body = &scene->body[k];
+        for (int m = 0; m < body->n_minus; m++) free(body->minus[m].stl);
+        free(body->minus);
+        free(body->shape.stl);
+        free(body->name);
+    }
+    for (int k = 0; k < scene->n_boundary; k++) free(scene->boundary[k].history.point);
+    free(scene->body);
+    free(scene->boundary);
+}
+
 void scene_free(struct scene *scene)
 {
     if (!scene) return;
@@ -19,14 +39,17 @@ void scene_free(struct scene *scene)
         free(scene->wall[k].name);
         free(scene->wall[k].stl);
     }
-    for (int k = 0; k < scene->n_measure; k++) free(scene->measure[k].name);
-    for (int k = 0; k < scene->output.n_field; k++) free(scene->output.field[k]);
+    for (int k = 0; k < scene->n_measure; k++) {
+        free(scene->measure[k].name);
+        free_words(scene->measure[k].field, scene->measure[k].n_field);
+    }
+    free_words(scene->output.field, scene->output.n_field);
+    free_bodies(scene);
     free(scene->material);
     free(scene->contact);
     free(scene->group);
     free(scene->wall);
     free(scene->measure);
-    free(scene->output.field);
     free(scene->path);
     free(scene->name);
     free(scene->title);

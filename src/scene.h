@@ -10,6 +10,7 @@
 #include <stddef.h>
 
 enum method { METHOD_PARTICLES, METHOD_LATTICE };
+enum scheme { SCHEME_LEAPFROG, SCHEME_RK4, SCHEME_RKN4, SCHEME_PEFRL, SCHEME_VEFRL }; /* in the order of enum lattice_scheme */
 enum precision { PRECISION_DEFAULT, PRECISION_DOUBLE, PRECISION_MIXED, PRECISION_SINGLE };
 
 /* More steps than this are no run but a mistake; all of them are whole numbers in double precision. */
@@ -19,14 +20,28 @@ struct scene_time {
     double end;          /* [s] */
     double step;         /* [s]; 0: auto */
     double safety;       /* [1] share of the rigorous limit that `auto` takes */
+    enum scheme scheme;  /* particles: leapfrog */
     bool allow_unstable; /* run although the step is over its limit */
 };
 
+enum damping_by { DAMPING_MASS, DAMPING_LINK };
+enum plane { PLANE_STRESS, PLANE_STRAIN };
+enum criterion { CRITERION_SUM, CRITERION_LARGEST, CRITERION_STRESS }; /* BREAK_* of kernels/law_break.h */
 struct material {
     char *name;
     double density; /* [kg/m3] */
     double young;   /* [Pa]; 0: not given */
     double poisson; /* [1] */
+    /* lattice only */
+    double mass_damping;              /* alpha [1/s]: a = -alpha v; follows from `ratio` where that is given */
+    double link_damping;              /* eta [s]: links pull with k (gap + eta rate); likewise */
+    double damping_ratio, damping_at; /* zeta [1] at a frequency [1/s]; ratio 0: not given */
+    enum damping_by damping_by;       /* what makes up that ratio */
+    bool has_strength;
+    double tension, shear; /* what the face of a cell bears [Pa]; infinity: anything; tension 0: from `energy` */
+    double energy;         /* of fracture [J/m2] */
+    enum plane plane;      /* state that `energy` is turned into a tension for */
+    enum criterion criterion;
 };
 
 enum normal_law { NORMAL_LINEAR, NORMAL_HERTZ };
@@ -51,11 +66,12 @@ struct contact {
     double binding_force;     /* F_b [N]; 0: none */
 };
 
-enum region_kind { REGION_BOX, REGION_CYLINDER, REGION_STL };
+enum region_kind { REGION_ALL, REGION_BOX, REGION_CYLINDER, REGION_SPHERE, REGION_STL };
 struct region {
     enum region_kind kind;
     double min[3], max[3];         /* box [m] */
-    double from[3], to[3], radius; /* cylinder [m] */
+    double from[3], to[3], radius; /* cylinder [m]; radius also of a sphere */
+    double center[3];              /* sphere [m] */
     char *stl;                     /* closed surface, path as usable from the working directory */
     double scale;                  /* metres per unit of the file */
 };
@@ -73,6 +89,53 @@ struct element_group {
     double velocity[3];         /* [m/s] */
     double angular_velocity[3]; /* [rad/s] */
     int line;                   /* of the scene file, for later errors */
+};
+
+/* A solid that is cut into cells. */
+struct body {
+    char *name;
+    int material;
+    double cell; /* edge h [m] */
+    struct region shape;
+    struct region *minus; /* [n_minus] holes */
+    int n_minus;
+    double velocity[3];         /* at time 0 [m/s] ... */
+    double angular_velocity[3]; /* ... and about the middle of its cells [rad/s] */
+    int line, column;           /* of its entry in the scene file */
+};
+
+enum history_kind { HISTORY_CONSTANT, HISTORY_RAMP, HISTORY_SINE, HISTORY_TABLE };
+/* Factor of a load over time, see history.h. */
+struct history {
+    enum history_kind kind;
+    double ramp;             /* [s] */
+    double frequency, phase; /* [1/s], [rad] */
+    double (*point)[2];      /* [n_point] time [s], factor [1]; times ascend */
+    int n_point;
+};
+
+enum boundary_kind { BOUNDARY_FIX, BOUNDARY_FORCE, BOUNDARY_PRESSURE, BOUNDARY_ACCELERATION, BOUNDARY_VELOCITY, BOUNDARY_ANGULAR_VELOCITY };
+struct boundary {
+    struct region where; /* REGION_ALL: anywhere */
+    int body;            /* only cells of this body; -1: of any */
+    enum boundary_kind kind;
+    bool fix[6];     /* x, y, z, rx, ry, rz */
+    double value[3]; /* force [N], acceleration [m/s2], velocity [m/s], [rad/s]; infinity: free */
+    double pressure; /* [Pa] */
+    struct history history;
+    int line, column;
+};
+
+enum lattice_law { LAW_ISOTROPIC, LAW_SEED }; /* in the order of enum link_set */
+enum rotation { ROTATION_FINITE, ROTATION_SMALL };
+enum stress { STRESS_AVERAGE, STRESS_EXTRAPOLATED };
+struct lattice_method {
+    enum lattice_law law;
+    enum rotation rotation;
+    enum stress stress; /* of cells at a surface */
+    bool relax;         /* look for equilibrium, and stop there */
+    double tolerance;   /* [1] of the largest load */
+    long look_every;    /* steps between two looks at what is left */
 };
 
 enum surface_kind { SURFACE_PLANE, SURFACE_RECTANGLE, SURFACE_BOX, SURFACE_CYLINDER, SURFACE_STL };
@@ -111,7 +174,7 @@ struct scene_partition {
     double threshold; /* imbalance U above which a due re-cut is made */
 };
 
-enum measure_kind { MEASURE_COUNT, MEASURE_ENERGY, MEASURE_MOMENTUM, MEASURE_WALL_FORCE, MEASURE_PROBE };
+enum measure_kind { MEASURE_COUNT, MEASURE_ENERGY, MEASURE_MOMENTUM, MEASURE_WALL_FORCE, MEASURE_PROBE, MEASURE_STRESS_MAX };
 struct measure {
     char *name;
     double every; /* [s] */
@@ -119,7 +182,10 @@ struct measure {
     double below[3]; /* count: element centre below this coordinate; +infinity where not given */
     double above[3]; /* count: above; -infinity where not given */
     int wall;        /* wall_force: index into scene.wall */
-    long element;    /* probe: global id */
+    long element;    /* probe, particles: global id */
+    double at[3];    /* probe, lattice: the cell whose centre is nearest [m] */
+    char **field;    /* probe, lattice: [n_field] names */
+    int n_field;
     int line;
 };
 
@@ -146,6 +212,11 @@ struct scene {
     int n_group;
     struct wall *wall;
     int n_wall;
+    struct body *body;
+    int n_body;
+    struct boundary *boundary;
+    int n_boundary;
+    struct lattice_method lattice;
     struct domain domain;
     struct scene_partition partition;
     struct output output;

@@ -14,13 +14,13 @@ static bool is_given(const struct scene_reader *reader, const char *path)
     return scene_path_find(reader->root, path) != NULL;
 }
 
-/* min < max in every direction. */
-static void check_box(struct scene_reader *reader, char *path, const double min[3], const double max[3])
+/* min < max in every direction, or at least min <= max of a box that may be flat. */
+static void check_box(struct scene_reader *reader, char *path, const double min[3], const double max[3], bool may_be_flat)
 {
     if (is_given(reader, path) && !scene_issue_is_below(reader, path))
         for (int k = 0; k < 3; k++)
-            if (!(min[k] < max[k])) {
-                scene_issue_on(reader, path, "min must be below max in %c", "xyz"[k]);
+            if (may_be_flat ? min[k] > max[k] : !(min[k] < max[k])) {
+                scene_issue_on(reader, path, "min must %s max in %c", may_be_flat ? "not be above" : "be below", "xyz"[k]);
                 break;
             }
     free(path);
@@ -30,6 +30,13 @@ static void check_cylinder(struct scene_reader *reader, char *path, const double
 {
     if (is_given(reader, path) && !scene_issue_is_below(reader, path) && memcmp(from, to, 3 * sizeof *from) == 0)
         scene_issue_on(reader, path, "from and to are the same point");
+    free(path);
+}
+
+void scene_check_region(struct scene_reader *reader, char *path, const struct region *region, bool may_be_flat)
+{
+    check_box(reader, fail_format("%s.box", path), region->min, region->max, may_be_flat);
+    check_cylinder(reader, fail_format("%s.cylinder", path), region->from, region->to);
     free(path);
 }
 
@@ -44,8 +51,7 @@ static void check_elements(struct scene_reader *reader)
 {
     for (int k = 0; k < reader->scene->n_group; k++) {
         const struct element_group *group = &reader->scene->group[k];
-        check_box(reader, fail_format("elements[%d].fill.region.box", k), group->region.min, group->region.max);
-        check_cylinder(reader, fail_format("elements[%d].fill.region.cylinder", k), group->region.from, group->region.to);
+        scene_check_region(reader, fail_format("elements[%d].fill.region", k), &group->region, false);
         char *path = fail_format("elements[%d].shape", k);
         if (is_given(reader, path) && !scene_issue_is_below(reader, path) && group->diameter[0] > group->diameter[1])
             scene_issue_on(reader, path, "min must not be above max");
@@ -59,7 +65,7 @@ static void check_walls(struct scene_reader *reader)
         const struct wall *wall = &reader->scene->wall[k];
         check_direction(reader, fail_format("walls[%d].surface.plane.normal", k), wall->normal);
         check_direction(reader, fail_format("walls[%d].surface.rectangle.normal", k), wall->normal);
-        check_box(reader, fail_format("walls[%d].surface.box", k), wall->min, wall->max);
+        check_box(reader, fail_format("walls[%d].surface.box", k), wall->min, wall->max, false);
         check_cylinder(reader, fail_format("walls[%d].surface.cylinder", k), wall->from, wall->to);
         check_direction(reader, fail_format("walls[%d].motion.rotation.axis", k), wall->rotation_axis);
         char *path = fail_format("walls[%d].motion", k), *remove = fail_format("%s.remove_at", path);
@@ -180,9 +186,14 @@ static void check_contacts(struct scene_reader *reader)
 static void check_domain(struct scene_reader *reader)
 {
     const struct domain *domain = &reader->scene->domain;
-    check_box(reader, fail_strdup("domain.box"), domain->min, domain->max);
+    check_box(reader, fail_strdup("domain.box"), domain->min, domain->max, false);
     if ((domain->periodic[0] || domain->periodic[1] || domain->periodic[2]) && !domain->has_box)
         scene_issue_on(reader, "domain.periodic", "needs 'box': what repeats must have an extent");
+}
+
+static void check_scheme(struct scene_reader *reader)
+{
+    if (reader->scene->time.scheme != SCHEME_LEAPFROG) scene_issue_on(reader, "time.scheme", "particles take leapfrog alone");
 }
 
 static void check_time(struct scene_reader *reader)
@@ -196,6 +207,11 @@ static void check_time(struct scene_reader *reader)
 void scene_check(struct scene_reader *reader)
 {
     check_time(reader);
+    if (reader->scene->method == METHOD_LATTICE) {
+        scene_check_lattice(reader);
+        return;
+    }
+    check_scheme(reader);
     check_elements(reader);
     check_walls(reader);
     check_contacts(reader);
@@ -210,6 +226,7 @@ static void normalise(double v[3])
 
 void scene_check_derive(struct scene *scene)
 {
+    scene_check_derive_damping(scene);
     for (int k = 0; k < scene->n_contact; k++) {
         struct contact *contact = &scene->contact[k];
         if (contact->restitution > 0) contact->damping_ratio = restitution_damping(contact->restitution, contact->attraction);

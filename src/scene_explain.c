@@ -23,9 +23,11 @@ static const char *const TYPE[] = {
     [KEY_FILE] = "file",
     [KEY_MATERIAL] = "material",
     [KEY_WALL] = "name of a wall",
+    [KEY_BODY] = "name of a body",
     [KEY_PAIR] = "two materials",
-    [KEY_AXES] = "list of x, y, z",
+    [KEY_AXES] = "list of words",
     [KEY_WORDS] = "list of words",
+    [KEY_TABLE] = "list of pairs, file",
 };
 
 /* Steps past one segment of a path or pattern and what belongs to it: "contacts[0]." and "contacts[]." both leave "contacts". */
@@ -53,12 +55,13 @@ static bool is_below(const char *pattern, const char *key)
     return true;
 }
 
-/* "needed", "one of", the default, or "-"; with the condition under which the key exists. */
+/* "needed", "one of", the default, or "-"; with the method that has the key, and the condition under which it exists. */
 static void default_text(const struct scene_key *key, char *text, size_t size)
 {
     const char *what = key->fallback ? key->fallback : key->need == NEEDED ? "needed" : key->need == ONE_OF ? "one of these" : "-";
     if (strcmp(what, "''") == 0 || strcmp(what, "{}") == 0) what = "-";
-    if (key->when) snprintf(text, size, "%s (%s)", what, key->when);
+    if (key->only || key->when)
+        snprintf(text, size, "%s (%s%s%s)", what, key->only ? key->only : "", key->only && key->when ? ", " : "", key->when ? key->when : "");
     else snprintf(text, size, "%s", what);
 }
 
@@ -83,7 +86,7 @@ static void print_row(const struct scene_key *key, int path_width)
     if (key->type == KEY_VECTOR) snprintf(type, sizeof type, "%d numbers", key->width);
     default_text(key, value, sizeof value);
     char *text = meaning(key);
-    bool quantity = key->type == KEY_NUMBER || key->type == KEY_SPAN || key->type == KEY_VECTOR;
+    bool quantity = key->type == KEY_NUMBER || key->type == KEY_SPAN || key->type == KEY_VECTOR || key->type == KEY_TABLE;
     const char *unit = !quantity ? "" : key->unit == UNIT_NONE ? "1" : units_si(key->unit);
     printf("%-*s  %-20s  %-5s  %-22s  %s\n", path_width, key->path, type, unit, value, text);
     free(text);

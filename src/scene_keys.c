@@ -17,16 +17,40 @@
 #define ZERO_TO_ONE {.given = true, .low = 0, .high = 1}
 #define SHARE {.given = true, .low_open = true, .low = 0, .high = 1}
 #define POISSON {.given = true, .low_open = true, .low = -1, .high = 0.5}
+#define POISSON_OPEN {.given = true, .low_open = true, .high_open = true, .low = -1, .high = 0.5}
+#define BELOW_ONE {.given = true, .low_open = true, .high_open = true, .low = 0, .high = 1}
+
+/* Shapes, for the struct region `member` of a record. `member` ends with a dot, or is empty where the record is the region. */
+#define BOX_KEYS(base, record, member, need)                                                                                                         \
+    {base ".box", KEY_MAP, need, .mark = IS(record, member kind, REGION_BOX), .text = "box along the axes"},                                         \
+    {base ".box.min", KEY_VECTOR, NEEDED, UNIT_LENGTH, VEC(record, member min), .text = "lowest corner"},                                            \
+    {base ".box.max", KEY_VECTOR, NEEDED, UNIT_LENGTH, VEC(record, member max), .text = "highest corner"}
+#define CYLINDER_KEYS(base, record, member, need)                                                                                                    \
+    {base ".cylinder", KEY_MAP, need, .mark = IS(record, member kind, REGION_CYLINDER), .text = "circular cylinder"},                                \
+    {base ".cylinder.from", KEY_VECTOR, NEEDED, UNIT_LENGTH, VEC(record, member from), .text = "one end of the axis"},                               \
+    {base ".cylinder.to", KEY_VECTOR, NEEDED, UNIT_LENGTH, VEC(record, member to), .text = "other end of the axis"},                                 \
+    {base ".cylinder.radius", KEY_NUMBER, NEEDED, UNIT_LENGTH, .range = ABOVE_ZERO, .at = AT(record, member radius), .text = "radius"}
+#define SPHERE_KEYS(base, record, member, need)                                                                                                      \
+    {base ".sphere", KEY_MAP, need, .mark = IS(record, member kind, REGION_SPHERE), .text = "sphere"},                                               \
+    {base ".sphere.center", KEY_VECTOR, NEEDED, UNIT_LENGTH, VEC(record, member center), .text = "its middle"},                                      \
+    {base ".sphere.radius", KEY_NUMBER, NEEDED, UNIT_LENGTH, .range = ABOVE_ZERO, .at = AT(record, member radius), .text = "radius"}
+#define STL_KEYS(base, record, member)                                                                                                               \
+    {base ".stl", KEY_FILE, ONE_OF, .at = AT(record, member stl), .mark = IS(record, member kind, REGION_STL),                                       \
+        .text = "inside of a closed surface in an STL file"},                                                                                        \
+    {base ".scale", KEY_NUMBER, OPTIONAL, UNIT_LENGTH, "1", ABOVE_ZERO, .when = "stl", .absent = 1, .at = AT(record, member scale),                  \
+        .text = "metres per unit of the STL file"}
 
 const struct scene_key scene_keys[] = {
 {"title", KEY_TEXT, .fallback = "''", .at = AT(scene, title), .text = "what the scene shows, for people"},
-{"method", KEY_CHOICE, NEEDED, .words = "particles", .later = "lattice", .at = AT(scene, method), .text = "the method: particles that touch"},
+{"method", KEY_CHOICE, NEEDED, .words = "particles|lattice", .at = AT(scene, method),
+    .text = "the method: particles that touch, or solids as a lattice of bonded cells"},
 {"time", KEY_MAP, NEEDED, .text = "how long and how finely"},
 {"time.end", KEY_NUMBER, NEEDED, UNIT_TIME, .range = ABOVE_ZERO, .at = AT(scene, time.end), .text = "simulated time at which the run ends"},
 {"time.step", KEY_NUMBER, OPTIONAL, UNIT_TIME, "auto", ABOVE_ZERO, .special = "auto", .at = AT(scene, time.step),
     .text = "time step; auto: safety times the rigorous limit"},
 {"time.safety", KEY_NUMBER, .fallback = "0.8", .range = SHARE, .at = AT(scene, time.safety), .text = "share of the limit that step: auto takes"},
-{"time.scheme", KEY_CHOICE, .fallback = "leapfrog", .words = "leapfrog", .text = "time integration: kick-drift-kick, one force per step"},
+{"time.scheme", KEY_CHOICE, .fallback = "leapfrog", .words = "leapfrog|rk4|rkn4|pefrl|vefrl", .at = AT(scene, time.scheme),
+    .text = "time integration; particles: leapfrog, kick-drift-kick with one force per step"},
 {"time.allow_unstable", KEY_BOOL, .fallback = "false", .at = AT(scene, time.allow_unstable), .text = "run although step is over its limit"},
 {"precision", KEY_CHOICE, .fallback = "double", .words = "|double|mixed|single", .at = AT(scene, precision),
     .text = "arithmetic; mixed: positions in double, contacts in single"},
@@ -35,11 +59,38 @@ const struct scene_key scene_keys[] = {
 {"materials", KEY_NAMED, NEEDED, .at = AT(scene, material), .count_at = AT(scene, n_material), .size = sizeof(struct material),
     .label_at = AT(material, name), .text = "materials by name"},
 {"materials.NAME.density", KEY_NUMBER, NEEDED, UNIT_DENSITY, .range = ABOVE_ZERO, .at = AT(material, density), .text = "mass per volume"},
-{"materials.NAME.young", KEY_NUMBER, OPTIONAL, UNIT_PRESSURE, .range = ABOVE_ZERO, .at = AT(material, young),
+{"materials.NAME.young", KEY_NUMBER, OPTIONAL, UNIT_PRESSURE, .range = ABOVE_ZERO, .at = AT(material, young), .only = "particles",
     .text = "Young's modulus, for law: hertz"},
-{"materials.NAME.poisson", KEY_NUMBER, .range = POISSON, .at = AT(material, poisson), .text = "Poisson's ratio, for law: hertz"},
+{"materials.NAME.young", KEY_NUMBER, NEEDED, UNIT_PRESSURE, .range = ABOVE_ZERO, .at = AT(material, young), .only = "lattice",
+    .text = "Young's modulus"},
+{"materials.NAME.poisson", KEY_NUMBER, .range = POISSON, .at = AT(material, poisson), .only = "particles",
+    .text = "Poisson's ratio, for law: hertz"},
+{"materials.NAME.poisson", KEY_NUMBER, NEEDED, .range = POISSON_OPEN, .at = AT(material, poisson), .only = "lattice", .text = "Poisson's ratio"},
+{"materials.NAME.damping", KEY_MAP, .only = "lattice", .text = "what takes energy out: mass and link, or a ratio at a frequency"},
+{"materials.NAME.damping.mass", KEY_NUMBER, OPTIONAL, UNIT_FREQUENCY, .range = FROM_ZERO, .at = AT(material, mass_damping),
+    .text = "alpha: deceleration alpha v of each cell; slows rigid motion too, costs no time step"},
+{"materials.NAME.damping.link", KEY_NUMBER, OPTIONAL, UNIT_TIME, .range = FROM_ZERO, .at = AT(material, link_damping),
+    .text = "eta: links resist with their stiffness times eta times the rate; ratio eta w/2, costs time step"},
+{"materials.NAME.damping.ratio", KEY_NUMBER, OPTIONAL, .range = ABOVE_ZERO, .at = AT(material, damping_ratio),
+    .text = "share of critical damping at one frequency, in place of mass and link"},
+{"materials.NAME.damping.at", KEY_NUMBER, NEEDED, UNIT_FREQUENCY, .range = ABOVE_ZERO, .when = "ratio", .at = AT(material, damping_at),
+    .text = "that frequency f"},
+{"materials.NAME.damping.by", KEY_CHOICE, .fallback = "mass", .words = "mass|link", .when = "ratio", .at = AT(material, damping_by),
+    .text = "mass: alpha = 4 pi f ratio; link: eta = ratio/(pi f), which costs much time step at a low frequency"},
+{"materials.NAME.strength", KEY_MAP, .only = "lattice", .mark = HAS(material, has_strength),
+    .text = "what links bear; between unlike materials the weaker counts"},
+{"materials.NAME.strength.tension", KEY_NUMBER, ONE_OF, UNIT_PRESSURE, .range = ABOVE_ZERO, .special = "none", .special_value = HUGE_VAL,
+    .at = AT(material, tension), .text = "stress across a face"},
+{"materials.NAME.strength.energy", KEY_NUMBER, ONE_OF, UNIT_FRACTURE, .range = ABOVE_ZERO, .at = AT(material, energy),
+    .text = "G_c, in place of tension: 0.75 sqrt(E' G_c/h), so that a slow crack spends G_c whatever the cell is"},
+{"materials.NAME.strength.plane", KEY_CHOICE, .fallback = "strain", .words = "stress|strain", .when = "energy", .at = AT(material, plane),
+    .text = "E' = E (plane stress: thin plates) or E/(1 - nu^2)"},
+{"materials.NAME.strength.shear", KEY_NUMBER, OPTIONAL, UNIT_PRESSURE, "none", ABOVE_ZERO, .special = "none", .special_value = HUGE_VAL,
+    .at = AT(material, shear), .text = "stress along a face"},
+{"materials.NAME.strength.criterion", KEY_CHOICE, .fallback = "stress", .words = "sum|largest|stress", .at = AT(material, criterion),
+    .text = "sum or largest of the shares of force and moments, or the stress at the face's edge"},
 
-{"contacts", KEY_LIST, .at = AT(scene, contact), .count_at = AT(scene, n_contact), .size = sizeof(struct contact),
+{"contacts", KEY_LIST, .only = "particles", .at = AT(scene, contact), .count_at = AT(scene, n_contact), .size = sizeof(struct contact),
     .text = "what happens where two materials touch; a part that is absent costs nothing"},
 {"contacts[].between", KEY_PAIR, NEEDED, .at = AT(contact, between), .text = "the two materials"},
 {"contacts[].normal", KEY_MAP, .text = "force along the line of centres"},
@@ -72,8 +123,8 @@ const struct scene_key scene_keys[] = {
 {"contacts[].binding.force", KEY_NUMBER, NEEDED, UNIT_FORCE, .range = ABOVE_ZERO, .at = AT(contact, binding_force),
     .text = "pull at which it breaks"},
 
-{"walls", KEY_LIST, .at = AT(scene, wall), .count_at = AT(scene, n_wall), .size = sizeof(struct wall), .label_at = AT(wall, line),
-    .text = "rigid surfaces"},
+{"walls", KEY_LIST, .only = "particles", .at = AT(scene, wall), .count_at = AT(scene, n_wall), .size = sizeof(struct wall),
+    .label_at = AT(wall, line), .text = "rigid surfaces"},
 {"walls[].name", KEY_NAME, NEEDED, .at = AT(wall, name), .text = "name, for measures and messages"},
 {"walls[].material", KEY_MATERIAL, NEEDED, .at = AT(wall, material), .text = "its material"},
 {"walls[].surface", KEY_MAP, NEEDED, .text = "its shape at time 0"},
@@ -111,7 +162,7 @@ const struct scene_key scene_keys[] = {
 {"walls[].motion.remove_at", KEY_NUMBER, OPTIONAL, UNIT_TIME, "never", ABOVE_ZERO, .special = "never", .special_value = HUGE_VAL, .absent = HUGE_VAL,
     .at = AT(wall, remove_at), .text = "the wall acts until then"},
 
-{"elements", KEY_LIST, NEEDED, .at = AT(scene, group), .count_at = AT(scene, n_group), .size = sizeof(struct element_group),
+{"elements", KEY_LIST, NEEDED, .only = "particles", .at = AT(scene, group), .count_at = AT(scene, n_group), .size = sizeof(struct element_group),
     .label_at = AT(element_group, line), .text = "groups of elements"},
 {"elements[].name", KEY_NAME, NEEDED, .at = AT(element_group, name), .text = "name, for messages"},
 {"elements[].material", KEY_MATERIAL, NEEDED, .at = AT(element_group, material), .text = "their material"},
@@ -131,18 +182,9 @@ const struct scene_key scene_keys[] = {
     .text = "largest"},
 {"elements[].fill", KEY_MAP, ONE_OF, .text = "fill a region with them, on a lattice of spacing (1 + jitter) times the largest diameter"},
 {"elements[].fill.region", KEY_MAP, NEEDED, .text = "where"},
-{"elements[].fill.region.box", KEY_MAP, ONE_OF, .mark = IS(element_group, region.kind, REGION_BOX), .text = "box along the axes"},
-{"elements[].fill.region.box.min", KEY_VECTOR, NEEDED, UNIT_LENGTH, VEC(element_group, region.min), .text = "lowest corner"},
-{"elements[].fill.region.box.max", KEY_VECTOR, NEEDED, UNIT_LENGTH, VEC(element_group, region.max), .text = "highest corner"},
-{"elements[].fill.region.cylinder", KEY_MAP, ONE_OF, .mark = IS(element_group, region.kind, REGION_CYLINDER), .text = "circular cylinder"},
-{"elements[].fill.region.cylinder.from", KEY_VECTOR, NEEDED, UNIT_LENGTH, VEC(element_group, region.from), .text = "one end of the axis"},
-{"elements[].fill.region.cylinder.to", KEY_VECTOR, NEEDED, UNIT_LENGTH, VEC(element_group, region.to), .text = "other end of the axis"},
-{"elements[].fill.region.cylinder.radius", KEY_NUMBER, NEEDED, UNIT_LENGTH, .range = ABOVE_ZERO, .at = AT(element_group, region.radius),
-    .text = "radius"},
-{"elements[].fill.region.stl", KEY_FILE, ONE_OF, .at = AT(element_group, region.stl), .mark = IS(element_group, region.kind, REGION_STL),
-    .text = "inside of a closed surface in an STL file"},
-{"elements[].fill.region.scale", KEY_NUMBER, OPTIONAL, UNIT_LENGTH, "1", ABOVE_ZERO, .when = "stl", .absent = 1,
-    .at = AT(element_group, region.scale), .text = "metres per unit of the STL file"},
+BOX_KEYS("elements[].fill.region", element_group, region., ONE_OF),
+CYLINDER_KEYS("elements[].fill.region", element_group, region., ONE_OF),
+STL_KEYS("elements[].fill.region", element_group, region.),
 {"elements[].fill.count", KEY_INTEGER, AT_MOST_ONE, .range = FROM_ONE, .at = AT(element_group, count),
     .text = "how many; it is an error if they do not fit"},
 {"elements[].fill.packing", KEY_CHOICE, AT_MOST_ONE, .words = "full", .text = "full: as many as fit (as without count)"},
@@ -155,8 +197,72 @@ const struct scene_key scene_keys[] = {
 {"elements[].angular_velocity", KEY_VECTOR, OPTIONAL, UNIT_ANGULAR_VELOCITY, "[0, 0, 0]", VEC(element_group, angular_velocity),
     .text = "angular velocity at time 0"},
 
-{"domain", KEY_MAP, .fallback = "{}", .text = "the space of the run"},
-{"domain.periodic", KEY_AXES, .fallback = "[]", .at = AT(scene, domain.periodic), .text = "directions that repeat; they need box"},
+{"bodies", KEY_LIST, NEEDED, .only = "lattice", .at = AT(scene, body), .count_at = AT(scene, n_body), .size = sizeof(struct body),
+    .label_at = AT(body, line), .column_at = AT(body, column), .text = "solids; where they overlap on one grid, the later one has the cell"},
+{"bodies[].name", KEY_NAME, NEEDED, .at = AT(body, name), .text = "name, for boundaries and messages"},
+{"bodies[].material", KEY_MATERIAL, NEEDED, .at = AT(body, material), .text = "its material"},
+{"bodies[].cell", KEY_NUMBER, NEEDED, UNIT_LENGTH, .range = ABOVE_ZERO, .at = AT(body, cell),
+    .text = "edge of its cells, which stand on the low corner of its bounding box; bodies whose grids agree are joined"},
+{"bodies[].shape", KEY_MAP, NEEDED, .text = "a cell is there if its centre is inside"},
+BOX_KEYS("bodies[].shape", body, shape., ONE_OF),
+CYLINDER_KEYS("bodies[].shape", body, shape., ONE_OF),
+SPHERE_KEYS("bodies[].shape", body, shape., ONE_OF),
+STL_KEYS("bodies[].shape", body, shape.),
+{"bodies[].minus", KEY_LIST, .at = AT(body, minus), .count_at = AT(body, n_minus), .size = sizeof(struct region), .text = "holes"},
+BOX_KEYS("bodies[].minus[]", region, , ONE_OF),
+CYLINDER_KEYS("bodies[].minus[]", region, , ONE_OF),
+SPHERE_KEYS("bodies[].minus[]", region, , ONE_OF),
+STL_KEYS("bodies[].minus[]", region, ),
+{"bodies[].velocity", KEY_VECTOR, OPTIONAL, UNIT_VELOCITY, "[0, 0, 0]", VEC(body, velocity), .text = "velocity at time 0"},
+{"bodies[].angular_velocity", KEY_VECTOR, OPTIONAL, UNIT_ANGULAR_VELOCITY, "[0, 0, 0]", VEC(body, angular_velocity),
+    .text = "rigid spin at time 0 about the middle of its cells"},
+
+{"boundaries", KEY_LIST, .only = "lattice", .at = AT(scene, boundary), .count_at = AT(scene, n_boundary), .size = sizeof(struct boundary),
+    .label_at = AT(boundary, line), .column_at = AT(boundary, column), .text = "what holds and drives the bodies; loads add up"},
+{"boundaries[].where", KEY_MAP, NEEDED, .special = "all",
+    .text = "a region, a body, both, or the word all: cells with their centre in it; for loads on faces, faces with their centre in it"},
+BOX_KEYS("boundaries[].where", boundary, where., AT_MOST_ONE),
+CYLINDER_KEYS("boundaries[].where", boundary, where., AT_MOST_ONE),
+SPHERE_KEYS("boundaries[].where", boundary, where., AT_MOST_ONE),
+{"boundaries[].where.body", KEY_BODY, .at = AT(boundary, body), .text = "only of this body"},
+{"boundaries[].fix", KEY_AXES, ONE_OF, .words = "x|y|z|rx|ry|rz", .at = AT(boundary, fix), .mark = IS(boundary, kind, BOUNDARY_FIX),
+    .text = "these motions are blocked; the clamp stands at the centres of the cells"},
+{"boundaries[].force", KEY_VECTOR, ONE_OF, UNIT_FORCE, VEC(boundary, value), .mark = IS(boundary, kind, BOUNDARY_FORCE),
+    .text = "in all: equal shares on the free faces in the region, on the centres of its cells if there are none"},
+{"boundaries[].pressure", KEY_NUMBER, ONE_OF, UNIT_PRESSURE, .at = AT(boundary, pressure), .mark = IS(boundary, kind, BOUNDARY_PRESSURE),
+    .text = "on the free faces in the region, against their normals, which turn with the body"},
+{"boundaries[].acceleration", KEY_VECTOR, ONE_OF, UNIT_ACCELERATION, VEC(boundary, value), .mark = IS(boundary, kind, BOUNDARY_ACCELERATION),
+    .text = "added to that from the forces"},
+{"boundaries[].velocity", KEY_VECTOR, ONE_OF, UNIT_VELOCITY, VEC(boundary, value), .special = "free", .special_value = HUGE_VAL,
+    .mark = IS(boundary, kind, BOUNDARY_VELOCITY), .text = "prescribed; free leaves a component to the forces"},
+{"boundaries[].angular_velocity", KEY_VECTOR, ONE_OF, UNIT_ANGULAR_VELOCITY, VEC(boundary, value), .special = "free", .special_value = HUGE_VAL,
+    .mark = IS(boundary, kind, BOUNDARY_ANGULAR_VELOCITY), .text = "the same for the turning of each cell"},
+{"boundaries[].history", KEY_MAP, .fallback = "constant", .special = "constant", .text = "factor over time; without, 1 from the start"},
+{"boundaries[].history.ramp", KEY_NUMBER, ONE_OF, UNIT_TIME, .range = ABOVE_ZERO, .at = AT(boundary, history.ramp),
+    .mark = IS(boundary, history.kind, HISTORY_RAMP), .text = "grows from 0 to 1 over this time"},
+{"boundaries[].history.sine", KEY_MAP, ONE_OF, .mark = IS(boundary, history.kind, HISTORY_SINE), .text = "sin(2 pi frequency t + phase)"},
+{"boundaries[].history.sine.frequency", KEY_NUMBER, NEEDED, UNIT_FREQUENCY, .range = FROM_ZERO, .at = AT(boundary, history.frequency),
+    .text = "cycles per second"},
+{"boundaries[].history.sine.phase", KEY_NUMBER, OPTIONAL, UNIT_ANGLE, "0", .at = AT(boundary, history.phase), .text = "phase at time 0"},
+{"boundaries[].history.table", KEY_TABLE, ONE_OF, UNIT_TIME, .at = AT(boundary, history.point), .count_at = AT(boundary, history.n_point),
+    .mark = IS(boundary, history.kind, HISTORY_TABLE),
+    .text = "[[time, factor], ...] or a CSV file of such lines; straight in between, level outside"},
+
+{"lattice", KEY_MAP, .fallback = "{}", .only = "lattice", .text = "how cells are linked"},
+{"lattice.law", KEY_CHOICE, .fallback = "isotropic", .words = "isotropic|seed", .at = AT(scene, lattice.law),
+    .text = "isotropic: the elastic solid that is asked for; seed: constants of an earlier solver, for poisson: 0, too stiff in bending"},
+{"lattice.rotation", KEY_CHOICE, .fallback = "finite", .words = "finite|small", .at = AT(scene, lattice.rotation),
+    .text = "finite: cells may turn by any angle; small: linear, cheaper, wrong for a body that turns"},
+{"lattice.stress", KEY_CHOICE, .fallback = "average", .words = "average|extrapolated", .at = AT(scene, lattice.stress),
+    .text = "of a cell with a free face: true average (half at the surface), or from the faces that have links"},
+{"lattice.relax", KEY_MAP, .mark = HAS(scene, lattice.relax), .text = "look for the state of rest, and stop there"},
+{"lattice.relax.tolerance", KEY_NUMBER, .fallback = "1e-6", .range = BELOW_ONE, .at = AT(scene, lattice.tolerance),
+    .text = "largest force that is left on a cell, as a share of the largest link force"},
+{"lattice.relax.every", KEY_INTEGER, .fallback = "100", .range = FROM_ONE, .at = AT(scene, lattice.look_every),
+    .text = "steps between two looks at it"},
+
+{"domain", KEY_MAP, .only = "particles", .fallback = "{}", .text = "the space of the run"},
+{"domain.periodic", KEY_AXES, .fallback = "[]", .words = "x|y|z", .at = AT(scene, domain.periodic), .text = "directions that repeat; they need box"},
 {"domain.box", KEY_MAP, .mark = HAS(scene, domain.has_box), .text = "its extent; else around walls and elements"},
 {"domain.box.min", KEY_VECTOR, NEEDED, UNIT_LENGTH, VEC(scene, domain.min), .text = "lowest corner"},
 {"domain.box.max", KEY_VECTOR, NEEDED, UNIT_LENGTH, VEC(scene, domain.max), .text = "highest corner"},
@@ -174,9 +280,12 @@ const struct scene_key scene_keys[] = {
 {"output", KEY_MAP, .fallback = "{}", .text = "frames"},
 {"output.every", KEY_NUMBER, OPTIONAL, UNIT_TIME, "0", FROM_ZERO, .at = AT(scene, output.every),
     .text = "time between frames; 0: first and last only"},
-{"output.fields", KEY_WORDS, .fallback = "[velocity, radius]",
+{"output.fields", KEY_WORDS, .only = "particles", .fallback = "[velocity, radius]",
     .words = "velocity|angular_velocity|orientation|radius|mass|force|coordination|id|material|owner",
     .at = AT(scene, output.field), .count_at = AT(scene, output.n_field), .text = "what a frame shows of each element"},
+{"output.fields", KEY_WORDS, .only = "lattice", .fallback = "[displacement, velocity]",
+    .words = "displacement|rotation|velocity|angular_velocity|stress|von_mises|broken|id|body|material|owner",
+    .at = AT(scene, output.field), .count_at = AT(scene, output.n_field), .text = "what a frame shows of each cell"},
 {"output.checkpoint_every", KEY_NUMBER, OPTIONAL, UNIT_TIME, "0", FROM_ZERO, .at = AT(scene, output.checkpoint_every),
     .text = "time between further frames for resume; 0: none"},
 
@@ -184,7 +293,7 @@ const struct scene_key scene_keys[] = {
     .text = "time series, one CSV file each"},
 {"measure[].name", KEY_NAME, NEEDED, .at = AT(measure, name), .text = "name of the file"},
 {"measure[].every", KEY_NUMBER, NEEDED, UNIT_TIME, .range = ABOVE_ZERO, .at = AT(measure, every), .text = "time between lines"},
-{"measure[].count", KEY_MAP, ONE_OF, .mark = IS(measure, kind, MEASURE_COUNT), .text = "number of elements whose centre is ..."},
+{"measure[].count", KEY_MAP, ONE_OF, .only = "particles", .mark = IS(measure, kind, MEASURE_COUNT), .text = "number of elements whose centre is ..."},
 {"measure[].count.below", KEY_MAP, .fallback = "{}", .text = "below these coordinates"},
 {"measure[].count.below.x", KEY_NUMBER, OPTIONAL, UNIT_LENGTH, "none", .special = "none", .special_value = HUGE_VAL, .at = AT(measure, below[0]),
     .text = "below this x"},
@@ -201,11 +310,17 @@ const struct scene_key scene_keys[] = {
     .text = "above this z"},
 {"measure[].energy", KEY_CHOICE, ONE_OF, .words = "all", .mark = IS(measure, kind, MEASURE_ENERGY), .text = "all terms of the energy budget"},
 {"measure[].momentum", KEY_CHOICE, ONE_OF, .words = "all", .mark = IS(measure, kind, MEASURE_MOMENTUM), .text = "linear and angular momentum"},
-{"measure[].wall_force", KEY_WALL, ONE_OF, .at = AT(measure, wall), .mark = IS(measure, kind, MEASURE_WALL_FORCE),
+{"measure[].wall_force", KEY_WALL, ONE_OF, .only = "particles", .at = AT(measure, wall), .mark = IS(measure, kind, MEASURE_WALL_FORCE),
     .text = "force and torque on this wall"},
-{"measure[].probe", KEY_MAP, ONE_OF, .mark = IS(measure, kind, MEASURE_PROBE), .text = "state of one element"},
-{"measure[].probe.element", KEY_INTEGER, NEEDED, .range = FROM_ZERO, .at = AT(measure, element),
+{"measure[].probe", KEY_MAP, ONE_OF, .mark = IS(measure, kind, MEASURE_PROBE), .text = "state of one element, of one cell"},
+{"measure[].probe.element", KEY_INTEGER, NEEDED, .only = "particles", .range = FROM_ZERO, .at = AT(measure, element),
     .text = "its number, from 0 in the order of the scene"},
+{"measure[].probe.at", KEY_VECTOR, NEEDED, UNIT_LENGTH, .only = "lattice", VEC(measure, at), .text = "the cell whose centre is nearest at the start"},
+{"measure[].probe.fields", KEY_WORDS, .only = "lattice", .fallback = "[displacement, velocity]",
+    .words = "displacement|rotation|velocity|angular_velocity|stress|von_mises", .at = AT(measure, field), .count_at = AT(measure, n_field),
+    .text = "what is written of it"},
+{"measure[].stress_max", KEY_CHOICE, ONE_OF, .only = "lattice", .words = "von_mises", .mark = IS(measure, kind, MEASURE_STRESS_MAX),
+    .text = "largest of all cells"},
 };
 /* clang-format on */
 
@@ -229,6 +344,11 @@ bool scene_key_is_in_record(const struct scene_key *key, const char *pattern)
     size_t n = strlen(pattern);
     if (n > 0 && (strncmp(key->path, pattern, n) != 0 || key->path[n] != '.')) return false;
     return !strstr(key->path + n, "[]") && !strstr(key->path + n, ".NAME");
+}
+
+bool scene_key_belongs(const struct scene_key *key, enum method method)
+{
+    return !key->only || strcmp(key->only, method == METHOD_LATTICE ? "lattice" : "particles") == 0;
 }
 
 void *scene_key_place(const struct scene_key *key, void *record)

@@ -2,13 +2,15 @@
  *
  * Paths are patterns: "contacts[].normal.law" is a key of every entry of a list, "materials.NAME.density" of every named entry. An entry of
  * a list or a named entry is a record: a struct of its own; the keys below it are stored at offsets into that struct, all others into
- * struct scene. Rules that tie several keys together beyond ONE_OF and `when` are in scene_check.c. */
+ * struct scene. A key that means one thing to particles and another to the lattice has a row for each. Rules that tie several keys together
+ * beyond ONE_OF and `when` are in scene_check*.c. */
 #ifndef DEMOCLES_SCENE_KEYS_H
 #define DEMOCLES_SCENE_KEYS_H
 
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "scene.h"
 #include "units.h"
 
 enum key_type {
@@ -26,9 +28,11 @@ enum key_type {
     KEY_FILE,     /* char *, existing file, relative to the scene */
     KEY_MATERIAL, /* int: index of a material given by name */
     KEY_WALL,     /* int: index of a wall */
+    KEY_BODY,     /* int: index of a body */
     KEY_PAIR,     /* int[2]: two materials */
-    KEY_AXES,     /* bool[3]: a list of x, y, z */
-    KEY_WORDS     /* char *[], int: a list out of words */
+    KEY_AXES,     /* bool[]: a list out of words, such as x, y, z */
+    KEY_WORDS,    /* char *[], int: a list out of words */
+    KEY_TABLE     /* double (*)[2], int: a list of pairs of time and factor, or a file of them */
 };
 
 enum key_need {
@@ -60,15 +64,17 @@ struct scene_key {
     struct key_range range;
     const char *words;    /* KEY_CHOICE, KEY_WORDS: "linear|hertz", in the order of the enum, an empty one cannot be chosen */
     const char *later;    /* KEY_CHOICE: a word that is known but refused */
-    const char *special;  /* KEY_NUMBER, KEY_INTEGER: a word in place of the number ... */
+    const char *special;  /* KEY_NUMBER, KEY_INTEGER, KEY_VECTOR, KEY_MAP: a word in place of a number, of the mapping ... */
     double special_value; /* ... and what is stored for it */
     double absent;        /* number stored where the key is neither given nor has a default */
     double factor;        /* stored value = factor * given value; 0: 1 */
+    const char *only;     /* "particles", "lattice": the key, and what is below it, belongs to that method; NULL: to both */
     const char *when;     /* "law: linear", "stl": allowed (and needed) only beside this sibling value, this sibling */
     size_t at;            /* 1 + offset into the record; 0: not stored */
-    size_t count_at;      /* KEY_LIST, KEY_NAMED, KEY_WORDS: 1 + offset of the number (int) */
+    size_t count_at;      /* KEY_LIST, KEY_NAMED, KEY_WORDS, KEY_TABLE: 1 + offset of the number (int) */
     size_t size;          /* KEY_LIST, KEY_NAMED: bytes of a record */
     size_t label_at;      /* KEY_LIST: 1 + offset of the line (int), or 0; KEY_NAMED: of the name (char *) */
+    size_t column_at;     /* KEY_LIST: 1 + offset of the column (int), or 0 */
     int width;            /* KEY_VECTOR */
     struct key_mark mark;
     const char *text; /* one sentence */
@@ -83,6 +89,8 @@ const char *scene_key_name(const struct scene_key *key);
 bool scene_key_is_child(const struct scene_key *key, const char *pattern);
 /* Whether it is stored in the record that `pattern` opens: below it at any depth, but not in a list further down. */
 bool scene_key_is_in_record(const struct scene_key *key, const char *pattern);
+/* Whether scenes of that method have the key. */
+bool scene_key_belongs(const struct scene_key *key, enum method method);
 /* Where it is stored, or NULL. */
 void *scene_key_place(const struct scene_key *key, void *record);
 

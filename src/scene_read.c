@@ -68,15 +68,6 @@ static unsigned long hash_of(const char *text)
     return (unsigned long)hash;
 }
 
-/* The keys of the lattice method would all be unknown here: only the method is reported. */
-static bool is_other_method(struct scene_reader *reader)
-{
-    const struct scene_node *method = scene_yaml_get(reader->root, "method", NULL);
-    if (!method || method->kind != NODE_SCALAR || strcmp(method->text, "lattice") != 0) return false;
-    scene_issue_at(reader, method, "method", "method lattice is not part of this version");
-    return true;
-}
-
 struct scene *scene_read(const char *path, const char *const *set, int n_set, struct scene_errors *errors)
 {
     size_t n;
@@ -95,10 +86,8 @@ struct scene *scene_read(const char *path, const char *const *set, int n_set, st
     reader.scene->path = fail_strdup(path);
     reader.scene->name = name_of(path);
     for (int k = 0; k < n_set; k++) scene_set_apply(&reader, k);
-    if (!is_other_method(&reader)) {
-        scene_walk(&reader);
-        scene_check(&reader);
-    }
+    scene_walk(&reader);
+    scene_check(&reader);
     struct scene *scene = reader.scene;
     if (reader.n_issue > 0) {
         scene_issue_report(&reader, errors);

@@ -54,6 +54,12 @@ void scene_set_apply(struct scene_reader *reader, int k);
 
 /* Rules that tie several keys together, and what is derived from them (scene_check.c). Called when every key has been read, also after issues. */
 void scene_check(struct scene_reader *reader);
+/* Of a scene of method lattice (scene_check_lattice.c). */
+void scene_check_lattice(struct scene_reader *reader);
+/* Rules of a region at `path`, which is freed; a flat box is one that selects, not one that is filled. */
+void scene_check_region(struct scene_reader *reader, char *path, const struct region *region, bool may_be_flat);
+/* alpha or eta of materials with a ratio. */
+void scene_check_derive_damping(struct scene *scene);
 /* Derived values; called only when there are no issues. */
 void scene_check_derive(struct scene *scene);
 

@@ -1,31 +1,20 @@
 /* Values of keys: one reader per type. Each checks the node, stores the value in the record and writes it, in SI, to the resolved text. */
 #include <ctype.h>
-#include <errno.h>
 #include <limits.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "fail.h"
 #include "nearest.h"
-#include "scene_reader.h"
+#include "scene_values.h"
 #include "units.h"
 
 enum { MAX_WORDS = 32 };
 
-/* What a key's value is read with. */
-struct place {
-    struct scene_reader *reader;
-    const struct scene_key *key;
-    const char *path;
-    void *record;
-};
-
-static bool is_kind(const struct place *p, const struct scene_node *node, enum scene_node_kind kind, const char *expected)
+bool scene_values_is_kind(const struct scene_place *p, const struct scene_node *node, enum scene_node_kind kind, const char *expected)
 {
     if (node->kind == kind && !scene_yaml_is_null(node)) return true;
     scene_issue_at(p->reader, node, p->path, "expected %s, found %s", expected, scene_yaml_kind_name(node));
@@ -55,7 +44,7 @@ void scene_values_join(char *text, size_t size, const char *const *word, int n)
     }
 }
 
-static int find_word(const struct place *p, const struct scene_node *node, const char *const *word, int n, const char *what)
+static int find_word(const struct scene_place *p, const struct scene_node *node, const char *const *word, int n, const char *what)
 {
     for (int k = 0; k < n; k++)
         if (*word[k] && strcmp(word[k], node->text) == 0) return k;
@@ -68,12 +57,12 @@ static int find_word(const struct place *p, const struct scene_node *node, const
     return -1;
 }
 
-static bool read_number(const struct place *p, const struct scene_node *node, const char *path, double *value)
+bool scene_values_number(const struct scene_place *p, const struct scene_node *node, const char *path, double *value)
 {
     const struct scene_key *key = p->key;
-    struct place own = *p;
+    struct scene_place own = *p;
     own.path = path;
-    if (!is_kind(&own, node, NODE_SCALAR, "a number")) return false;
+    if (!scene_values_is_kind(&own, node, NODE_SCALAR, "a number")) return false;
     if (key->special && strcmp(node->text, key->special) == 0) {
         *value = key->special_value;
         return true;
@@ -90,14 +79,14 @@ static bool read_number(const struct place *p, const struct scene_node *node, co
     return false;
 }
 
-static void write_number(const struct place *p, double value)
+static void write_number(const struct scene_place *p, double value)
 {
     const struct scene_key *key = p->key;
     if (key->special && (value == key->special_value)) scene_write(&p->reader->out, "%s", key->special);
     else scene_write_number(&p->reader->out, value);
 }
 
-static void store_number(const struct place *p, double value, int n)
+static void store_number(const struct scene_place *p, double value, int n)
 {
     double *to = scene_key_place(p->key, p->record);
     for (int k = 0; k < n && to; k++) to[k] = value * (p->key->factor != 0 ? p->key->factor : 1);
@@ -106,13 +95,13 @@ static void store_number(const struct place *p, double value, int n)
     scene_write_end(&p->reader->out);
 }
 
-static void read_vector(const struct place *p, const struct scene_node *node)
+static void read_vector(const struct scene_place *p, const struct scene_node *node)
 {
     int n = p->key->width;
     double value[3];
     char expected[32];
     snprintf(expected, sizeof expected, "a list of %d numbers", n);
-    if (!is_kind(p, node, NODE_SEQUENCE, expected)) return;
+    if (!scene_values_is_kind(p, node, NODE_SEQUENCE, expected)) return;
     if (node->n != n) {
         scene_issue_at(p->reader, node, p->path, "expected %s, found %d", expected, node->n);
         return;
@@ -120,7 +109,8 @@ static void read_vector(const struct place *p, const struct scene_node *node)
     bool good = true;
     for (int k = 0; k < n; k++) {
         char *path = fail_format("%s[%d]", p->path, k);
-        good = read_number(p, node->item[k], path, &value[k]) && good;
+        if (p->key->special && scene_yaml_is_null(node->item[k])) value[k] = p->key->special_value;
+        else good = scene_values_number(p, node->item[k], path, &value[k]) && good;
         free(path);
     }
     if (!good) return;
@@ -133,10 +123,10 @@ static void read_vector(const struct place *p, const struct scene_node *node)
     scene_write(&p->reader->out, "]\n");
 }
 
-static void read_integer(const struct place *p, const struct scene_node *node)
+static void read_integer(const struct scene_place *p, const struct scene_node *node)
 {
     double value;
-    if (!read_number(p, node, p->path, &value)) return;
+    if (!scene_values_number(p, node, p->path, &value)) return;
     if (value != floor(value) || fabs(value) > 9007199254740992.0) { /* 2^53: beyond, doubles skip integers */
         scene_issue_at(p->reader, node, p->path, "expected a whole number, found %s", node->text);
         return;
@@ -146,11 +136,11 @@ static void read_integer(const struct place *p, const struct scene_node *node)
     scene_write(&p->reader->out, " %ld\n", (long)value);
 }
 
-static void read_bool(const struct place *p, const struct scene_node *node)
+static void read_bool(const struct scene_place *p, const struct scene_node *node)
 {
     bool is_true = node->kind == NODE_SCALAR && strcmp(node->text, "true") == 0;
     if (!is_true && !(node->kind == NODE_SCALAR && strcmp(node->text, "false") == 0)) {
-        if (is_kind(p, node, NODE_SCALAR, "true or false"))
+        if (scene_values_is_kind(p, node, NODE_SCALAR, "true or false"))
             scene_issue_at(p->reader, node, p->path, "expected true or false, found '%s'", node->text);
         return;
     }
@@ -159,12 +149,12 @@ static void read_bool(const struct place *p, const struct scene_node *node)
     scene_write_value(&p->reader->out, is_true ? "true" : "false");
 }
 
-static void read_choice(const struct place *p, const struct scene_node *node)
+static void read_choice(const struct scene_place *p, const struct scene_node *node)
 {
     char buffer[256];
     const char *word[MAX_WORDS];
     int n = split_words(p->key->words, buffer, sizeof buffer, word);
-    if (!is_kind(p, node, NODE_SCALAR, "a word")) return;
+    if (!scene_values_is_kind(p, node, NODE_SCALAR, "a word")) return;
     if (p->key->later && strcmp(node->text, p->key->later) == 0) {
         scene_issue_at(p->reader, node, p->path, "%s %s is not part of this version", scene_key_name(p->key), node->text);
         return;
@@ -176,9 +166,9 @@ static void read_choice(const struct place *p, const struct scene_node *node)
     scene_write_value(&p->reader->out, word[index]);
 }
 
-static void read_text(const struct place *p, const struct scene_node *node)
+static void read_text(const struct scene_place *p, const struct scene_node *node)
 {
-    if (node->kind != NODE_SCALAR && !is_kind(p, node, NODE_SCALAR, "text")) return;
+    if (node->kind != NODE_SCALAR && !scene_values_is_kind(p, node, NODE_SCALAR, "text")) return;
     if (p->key->type == KEY_NAME) {
         const char *problem = scene_values_name_problem(node);
         if (problem) {
@@ -203,52 +193,34 @@ const char *scene_values_name_problem(const struct scene_node *node)
     return NULL;
 }
 
-static void read_file(const struct place *p, const struct scene_node *node)
+/* What a key refers to by name. */
+static const char *referred_name(const struct scene *scene, enum key_type type, int k)
 {
-    if (!is_kind(p, node, NODE_SCALAR, "the path of a file")) return;
-    const char *folder = node->text[0] == '/' ? "" : p->reader->folder;
-    char *file = fail_format("%s%s", folder, node->text);
-    struct stat info;
-    const char *problem = NULL;
-    if (stat(file, &info) != 0) problem = strerror(errno);
-    else if (!S_ISREG(info.st_mode)) problem = "not a file";
-    else if (access(file, R_OK) != 0) problem = strerror(errno);
-    char *absolute = problem ? NULL : realpath(file, NULL);
-    if (!problem && !absolute) problem = strerror(errno);
-    if (problem) {
-        scene_issue_at(p->reader, node, p->path, "cannot read '%s': %s", file, problem);
-        free(file);
-        return;
-    }
-    char **to = scene_key_place(p->key, p->record);
-    free(*to);
-    *to = file;
-    scene_write(&p->reader->out, " ");
-    scene_write_string(&p->reader->out, absolute);
-    scene_write_end(&p->reader->out);
-    free(absolute);
+    const char *name = type == KEY_WALL ? scene->wall[k].name : type == KEY_BODY ? scene->body[k].name : scene->material[k].name;
+    return name ? name : "";
 }
 
-/* Index of a material (or wall) by name; -1 and an issue if there is none. Silent where none could be read at all: that has its own issue. */
-static int find_reference(const struct place *p, const struct scene_node *node, bool wall)
+/* Index of a material, wall or body by name; -1 and an issue if there is none. Silent where none could be read at all: that has its own issue. */
+static int find_reference(const struct scene_place *p, const struct scene_node *node, enum key_type type)
 {
     const struct scene *scene = p->reader->scene;
-    int n = wall ? scene->n_wall : scene->n_material;
-    if (!is_kind(p, node, NODE_SCALAR, wall ? "the name of a wall" : "the name of a material")) return -1;
-    if (n == 0 && scene_issue_is_below(p->reader, wall ? "walls" : "materials")) return -1;
+    const char *what = type == KEY_WALL ? "wall" : type == KEY_BODY ? "body" : "material";
+    const char *list = type == KEY_WALL ? "walls" : type == KEY_BODY ? "bodies" : "materials";
+    int n = type == KEY_WALL ? scene->n_wall : type == KEY_BODY ? scene->n_body : scene->n_material;
+    char expected[32];
+    snprintf(expected, sizeof expected, "the name of a %s", what);
+    if (!scene_values_is_kind(p, node, NODE_SCALAR, expected)) return -1;
+    if (n == 0 && scene_issue_is_below(p->reader, list)) return -1;
     const char **name = fail_alloc((size_t)n * sizeof *name);
-    for (int k = 0; k < n; k++) {
-        const char *own = wall ? scene->wall[k].name : scene->material[k].name;
-        name[k] = own ? own : "";
-    }
-    int index = find_word(p, node, name, n, wall ? "wall" : "material");
+    for (int k = 0; k < n; k++) name[k] = referred_name(scene, type, k);
+    int index = find_word(p, node, name, n, what);
     free(name);
     return index;
 }
 
-static void read_reference(const struct place *p, const struct scene_node *node)
+static void read_reference(const struct scene_place *p, const struct scene_node *node)
 {
-    int index = find_reference(p, node, p->key->type == KEY_WALL);
+    int index = find_reference(p, node, p->key->type);
     if (index < 0) return;
     *(int *)scene_key_place(p->key, p->record) = index;
     scene_write(&p->reader->out, " ");
@@ -256,18 +228,18 @@ static void read_reference(const struct place *p, const struct scene_node *node)
     scene_write_end(&p->reader->out);
 }
 
-static void read_pair(const struct place *p, const struct scene_node *node)
+static void read_pair(const struct scene_place *p, const struct scene_node *node)
 {
-    if (!is_kind(p, node, NODE_SEQUENCE, "a list of two materials")) return;
+    if (!scene_values_is_kind(p, node, NODE_SEQUENCE, "a list of two materials")) return;
     if (node->n != 2) {
         scene_issue_at(p->reader, node, p->path, "expected a list of two materials, found %d", node->n);
         return;
     }
     int *to = scene_key_place(p->key, p->record);
     for (int k = 0; k < 2; k++) {
-        struct place own = *p;
+        struct scene_place own = *p;
         own.path = fail_format("%s[%d]", p->path, k);
-        to[k] = find_reference(&own, node->item[k], false);
+        to[k] = find_reference(&own, node->item[k], KEY_MATERIAL);
         free((char *)own.path);
     }
     if (to[0] < 0 || to[1] < 0) return;
@@ -279,17 +251,17 @@ static void read_pair(const struct place *p, const struct scene_node *node)
 }
 
 /* Lists out of fixed words, each at most once: `index` gets those found. Returns their number. */
-static int read_word_list(const struct place *p, const struct scene_node *node, const char *words, const char *what, int *index)
+static int read_word_list(const struct scene_place *p, const struct scene_node *node, const char *words, const char *what, int *index)
 {
     char buffer[256], expected[64];
     const char *word[MAX_WORDS];
     int n_word = split_words(words, buffer, sizeof buffer, word), n = 0;
     snprintf(expected, sizeof expected, "a list of %ss", what);
-    if (!is_kind(p, node, NODE_SEQUENCE, expected)) return 0;
+    if (!scene_values_is_kind(p, node, NODE_SEQUENCE, expected)) return 0;
     for (int k = 0; k < node->n; k++) {
-        struct place own = *p;
+        struct scene_place own = *p;
         own.path = fail_format("%s[%d]", p->path, k);
-        int found = is_kind(&own, node->item[k], NODE_SCALAR, "a word") ? find_word(&own, node->item[k], word, n_word, what) : -1;
+        int found = scene_values_is_kind(&own, node->item[k], NODE_SCALAR, "a word") ? find_word(&own, node->item[k], word, n_word, what) : -1;
         bool again = false;
         for (int j = 0; j < n; j++) again = again || index[j] == found;
         if (found >= 0 && again) scene_issue_at(p->reader, node->item[k], own.path, "'%s' is listed twice", word[found]);
@@ -302,14 +274,14 @@ static int read_word_list(const struct place *p, const struct scene_node *node, 
     return n;
 }
 
-static void read_axes(const struct place *p, const struct scene_node *node)
+static void read_axes(const struct scene_place *p, const struct scene_node *node)
 {
     int index[MAX_WORDS];
     bool *to = scene_key_place(p->key, p->record);
-    for (int k = read_word_list(p, node, "x|y|z", "direction", index) - 1; k >= 0; k--) to[index[k]] = true;
+    for (int k = read_word_list(p, node, p->key->words, "direction", index) - 1; k >= 0; k--) to[index[k]] = true;
 }
 
-static void read_words(const struct place *p, const struct scene_node *node)
+static void read_words(const struct scene_place *p, const struct scene_node *node)
 {
     char buffer[256];
     const char *word[MAX_WORDS];
@@ -323,14 +295,14 @@ static void read_words(const struct place *p, const struct scene_node *node)
 
 void scene_values_read(struct scene_reader *reader, const struct scene_key *key, const struct scene_node *node, const char *path, void *record)
 {
-    struct place p = {reader, key, path, record};
+    struct scene_place p = {reader, key, path, record};
     double value;
     switch (key->type) {
     case KEY_NUMBER:
-        if (read_number(&p, node, path, &value)) store_number(&p, value, 1);
+        if (scene_values_number(&p, node, path, &value)) store_number(&p, value, 1);
         break;
     case KEY_SPAN: /* as a number: both ends */
-        if (read_number(&p, node, path, &value)) store_number(&p, value, 2);
+        if (scene_values_number(&p, node, path, &value)) store_number(&p, value, 2);
         break;
     case KEY_VECTOR: read_vector(&p, node); break;
     case KEY_INTEGER: read_integer(&p, node); break;
@@ -338,12 +310,14 @@ void scene_values_read(struct scene_reader *reader, const struct scene_key *key,
     case KEY_CHOICE: read_choice(&p, node); break;
     case KEY_TEXT:
     case KEY_NAME: read_text(&p, node); break;
-    case KEY_FILE: read_file(&p, node); break;
+    case KEY_FILE: scene_table_file(&p, node); break;
     case KEY_MATERIAL:
-    case KEY_WALL: read_reference(&p, node); break;
+    case KEY_WALL:
+    case KEY_BODY: read_reference(&p, node); break;
     case KEY_PAIR: read_pair(&p, node); break;
     case KEY_AXES: read_axes(&p, node); break;
     case KEY_WORDS: read_words(&p, node); break;
+    case KEY_TABLE: scene_table_read(&p, node); break;
     case KEY_MAP:
     case KEY_LIST:
     case KEY_NAMED: break; /* scene_read.c reads these itself */

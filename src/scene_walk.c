@@ -29,11 +29,17 @@ static char *join(const char *path, const char *name)
     return *path ? fail_format("%s.%s", path, name) : fail_strdup(name);
 }
 
-static int child_names(const char *pattern, const char **name)
+static bool belongs(const struct scene_reader *reader, const struct scene_key *key)
+{
+    return scene_key_belongs(key, reader->scene->method);
+}
+
+/* Of the keys that the scene's method has. */
+static int child_names(const struct scene_reader *reader, const char *pattern, const char **name)
 {
     int n = 0;
     for (int k = 0; k < scene_keys_n; k++) {
-        if (!scene_key_is_child(&scene_keys[k], pattern)) continue;
+        if (!scene_key_is_child(&scene_keys[k], pattern) || !belongs(reader, &scene_keys[k])) continue;
         assert(n < MAX_CHILDREN);
         name[n++] = scene_key_name(&scene_keys[k]);
     }
@@ -47,14 +53,22 @@ static bool is_known(const char *text, const char *const *name, int n)
     return false;
 }
 
+/* The method that alone has this key, or NULL. */
+static const char *only_method(const char *pattern, const char *name)
+{
+    for (int k = 0; k < scene_keys_n; k++)
+        if (scene_key_is_child(&scene_keys[k], pattern) && strcmp(scene_key_name(&scene_keys[k]), name) == 0) return scene_keys[k].only;
+    return NULL;
+}
+
 /* Whether an unknown key of the mapping most likely means `name`: then `name` is not reported as missing, too. */
-static bool is_misspelt(const struct spot *at, const char *name)
+static bool is_misspelt(const struct scene_reader *reader, const struct spot *at, const char *name)
 {
     const char *known[MAX_CHILDREN];
-    int n = child_names(at->pattern, known);
+    int n = child_names(reader, at->pattern, known);
     for (int k = 0; k < at->map->n; k++) {
         const char *text = at->map->key[k]->text;
-        const char *near = is_known(text, known, n) ? NULL : nearest_name(text, known, n);
+        const char *near = is_known(text, known, n) || only_method(at->pattern, text) ? NULL : nearest_name(text, known, n);
         if (near && strcmp(near, name) == 0) return true;
     }
     return false;
@@ -75,13 +89,14 @@ static void report_duplicates(struct scene_reader *reader, const struct scene_no
 static void report_unknown(struct scene_reader *reader, const struct spot *at)
 {
     const char *known[MAX_CHILDREN];
-    int n = child_names(at->pattern, known);
+    int n = child_names(reader, at->pattern, known);
     for (int k = 0; k < at->map->n; k++) {
-        const char *text = at->map->key[k]->text;
+        const char *text = at->map->key[k]->text, *only = only_method(at->pattern, text);
         if (is_known(text, known, n)) continue;
         char *child = join(at->path, text);
         const char *near = nearest_name(text, known, n);
-        if (near) scene_issue_at(reader, at->map->key[k], child, "unknown key; did you mean '%s'?", near);
+        if (only) scene_issue_at(reader, at->map->key[k], child, "a key of method %s alone", only);
+        else if (near) scene_issue_at(reader, at->map->key[k], child, "unknown key; did you mean '%s'?", near);
         else if (n <= FEW) {
             char all[256];
             scene_values_join(all, sizeof all, known, n);
@@ -102,10 +117,14 @@ static void report_alternatives(struct scene_reader *reader, const struct spot *
         const struct scene_key *key = &scene_keys[k];
         if ((key->need != ONE_OF && key->need != AT_MOST_ONE) || !scene_key_is_child(key, at->pattern)) continue;
         const char *name = scene_key_name(key);
+        if (!belongs(reader, key)) { /* has its own message where it is given */
+            misspelt = misspelt || scene_yaml_get(at->map, name, NULL);
+            continue;
+        }
         size_t used = strlen(all);
         snprintf(all + used, sizeof all - used, "%s'%s'", n_option++ ? ", " : "", name);
         one_needed = key->need == ONE_OF;
-        misspelt = misspelt || is_misspelt(at, name);
+        misspelt = misspelt || is_misspelt(reader, at, name);
         int index;
         if (!scene_yaml_get(at->map, name, &index)) continue;
         if (++n_given == 1) continue;
@@ -157,16 +176,17 @@ static void init_record(const char *pattern, void *record)
         void *place = scene_key_is_in_record(key, pattern) ? scene_key_place(key, record) : NULL;
         if (!place) continue;
         if (key->type == KEY_NUMBER) *(double *)place = key->absent;
-        if (key->type == KEY_MATERIAL || key->type == KEY_WALL || key->type == KEY_PAIR) *(int *)place = -1;
+        if (key->type == KEY_MATERIAL || key->type == KEY_WALL || key->type == KEY_BODY || key->type == KEY_PAIR) *(int *)place = -1;
         if (key->type == KEY_PAIR) ((int *)place)[1] = -1;
     }
 }
 
-static void *new_records(const struct scene_key *key, struct scene *scene, int n)
+/* Of a list or named entries that stand in `record`. */
+static void *new_records(const struct scene_key *key, void *record, int n)
 {
     void *records = fail_alloc((size_t)n * key->size);
-    *(void **)scene_key_place(key, scene) = records;
-    *(int *)((char *)scene + key->count_at - 1) = n;
+    *(void **)scene_key_place(key, record) = records;
+    *(int *)(void *)((char *)record + key->count_at - 1) = n;
     return records;
 }
 
@@ -194,13 +214,14 @@ static void read_list(struct scene_reader *reader, const struct scene_key *key, 
         scene_issue_at(reader, list, at->path, "expected a list of mappings, found %s", found);
         return;
     }
-    char *records = new_records(key, reader->scene, list->n);
+    char *records = new_records(key, at->record, list->n);
     char *pattern = fail_format("%s[]", at->pattern);
     size_t opened = scene_write_open(&reader->out);
     for (int k = 0; k < list->n; k++) {
         char *record = records + (size_t)k * key->size, *path = fail_format("%s[%d]", at->path, k);
         init_record(pattern, record);
         if (key->label_at) *(int *)(void *)(record + key->label_at - 1) = list->item[k]->line;
+        if (key->column_at) *(int *)(void *)(record + key->column_at - 1) = list->item[k]->column;
         reader->out.dash = true;
         struct spot entry = {pattern, path, list->item[k], record, at->depth + 2};
         if (list->item[k]->kind == NODE_MAPPING) read_mapping(reader, &entry);
@@ -221,7 +242,7 @@ static void read_named(struct scene_reader *reader, const struct scene_key *key,
         scene_issue_at(reader, map, at->path, "expected a mapping of names to mappings, found %s", found);
         return;
     }
-    char *records = new_records(key, reader->scene, map->n);
+    char *records = new_records(key, at->record, map->n);
     char *pattern = fail_format("%s.NAME", at->pattern);
     scene_write_end(&reader->out);
     for (int k = 0; k < map->n; k++) {
@@ -246,9 +267,12 @@ static void read_value(struct scene_reader *reader, const struct scene_key *key,
 {
     set_mark(key, at->record);
     scene_write_key(&reader->out, at->depth, scene_key_name(key));
-    if (key->type == KEY_MAP || (key->type == KEY_SPAN && at->map->kind == NODE_MAPPING)) {
+    if (key->type == KEY_MAP && key->special && at->map->kind == NODE_SCALAR && strcmp(at->map->text, key->special) == 0) {
+        scene_write_value(&reader->out, key->special);
+    } else if (key->type == KEY_MAP || (key->type == KEY_SPAN && at->map->kind == NODE_MAPPING)) {
         if (at->map->kind != NODE_MAPPING) {
-            scene_issue_at(reader, at->map, at->path, "expected a mapping, found %s", scene_yaml_kind_name(at->map));
+            const char * or = key->special ? ", or '" : "", *word = key->special ? key->special : "", *end = key->special ? "'" : "";
+            scene_issue_at(reader, at->map, at->path, "expected a mapping%s%s%s, found %s", or, word, end, scene_yaml_kind_name(at->map));
             return;
         }
         size_t opened = scene_write_open(&reader->out);
@@ -288,7 +312,7 @@ static void read_key(struct scene_reader *reader, const struct scene_key *key, c
         read_value(reader, key, &own);
     } else if (key->fallback) {
         read_default(reader, key, &own);
-    } else if (key->need == NEEDED && holds == HOLDS && !is_misspelt(at, name)) {
+    } else if (key->need == NEEDED && holds == HOLDS && !is_misspelt(reader, at, name)) {
         if (key->when) scene_issue_at(reader, at->map, at->path, "missing key '%s' (%s)", name, key->when);
         else scene_issue_at(reader, at->map, at->path, "missing key '%s'", name);
     }
@@ -298,7 +322,7 @@ static void read_key(struct scene_reader *reader, const struct scene_key *key, c
 static void read_mapping(struct scene_reader *reader, const struct spot *at)
 {
     for (int k = 0; k < scene_keys_n; k++)
-        if (scene_key_is_child(&scene_keys[k], at->pattern)) read_key(reader, &scene_keys[k], at);
+        if (scene_key_is_child(&scene_keys[k], at->pattern) && belongs(reader, &scene_keys[k])) read_key(reader, &scene_keys[k], at);
     report_unknown(reader, at);
     report_duplicates(reader, at->map, at->path);
     report_alternatives(reader, at);
@@ -311,5 +335,7 @@ void scene_walk(struct scene_reader *reader)
         scene_issue_at(reader, reader->root, "", "expected a mapping, found %s", scene_yaml_kind_name(reader->root));
         return;
     }
+    /* Until `method` has been read, and where it is wrong: what the scene looks like. */
+    if (scene_yaml_get(reader->root, "bodies", NULL)) reader->scene->method = METHOD_LATTICE;
     read_mapping(reader, &(struct spot){.pattern = "", .path = "", .map = reader->root, .record = reader->scene});
 }

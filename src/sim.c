@@ -51,7 +51,7 @@ struct sim *sim_create(struct scene *scene, struct comm *comm, struct log *log, 
     s->scene = scene;
     s->comm = comm;
     s->log = log;
-    s->ops = &particle_ops;
+    s->ops = scene->method == METHOD_LATTICE ? &lattice_ops : &particle_ops;
     s->started = timer_now();
     timer_begin(&s->timers, TIMER_SETUP);
     s->ops->read(s);

@@ -35,6 +35,8 @@ struct sim {
     double domain[6], period[3]; /* box low, high [m]; 0 where not periodic */
     const struct step_ops *ops;
 
+    struct lattice_run *solid; /* lattice method: lattice_method.h */
+
     /* particle method */
     struct elements_host *first; /* as generated, all elements on every rank */
     int64_t *left;               /* [n_measure] elements that left the run where a count holds, on this rank */

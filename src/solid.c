@@ -103,17 +103,25 @@ static int crossing(const double *p, const double *q, const double *x)
     return side(q, p, x) > 0 ? -1 : 0;
 }
 
+/* What triangle t adds to the winding number of the points below *height on the line through x and y of x; 0: it does not cross the line. */
+static int cross(const struct stl *stl, int t, const double *x, double *height)
+{
+    const double *p = corner_of(stl, t, 0), *q = corner_of(stl, t, 1), *s = corner_of(stl, t, 2);
+    int winding = crossing(p, q, x) + crossing(q, s, x) + crossing(s, p, x);
+    if (winding == 0) return 0;
+    double area = side(p, q, s), low = fmin(fmin(p[2], q[2]), s[2]), high = fmax(fmax(p[2], q[2]), s[2]);
+    if (area > 0 || area < 0) *height = (side(q, s, x) * p[2] + side(s, p, x) * q[2] + side(p, q, x) * s[2]) / area;
+    else *height = low;
+    *height = r_clamp(*height, low, high);
+    return winding;
+}
+
 static void visit_ray(int t, void *context)
 {
     struct query *query = context;
-    const double *p = corner_of(query->stl, t, 0), *q = corner_of(query->stl, t, 1), *s = corner_of(query->stl, t, 2), *x = query->x;
-    int winding = crossing(p, q, x) + crossing(q, s, x) + crossing(s, p, x);
-    if (winding == 0) return;
-    double area = side(p, q, s), height;
-    double low = fmin(fmin(p[2], q[2]), s[2]), high = fmax(fmax(p[2], q[2]), s[2]);
-    if (area > 0 || area < 0) height = (side(q, s, x) * p[2] + side(s, p, x) * q[2] + side(p, q, x) * s[2]) / area;
-    else height = low;
-    if (r_clamp(height, low, high) > x[2]) query->winding += winding;
+    double height;
+    int winding = cross(query->stl, t, query->x, &height);
+    if (winding != 0 && height > query->x[2]) query->winding += winding;
 }
 
 bool solid_contains(const struct solid *solid, const double x[3])
@@ -122,4 +130,37 @@ bool solid_contains(const struct solid *solid, const double x[3])
     double high[3] = {x[0], x[1], HUGE_VAL};
     bvh_visit(solid->bvh, x, high, visit_ray, &query);
     return query.winding != 0;
+}
+
+struct column {
+    const struct stl *stl;
+    const double *x, *z; /* [2], [n] */
+    int n;
+    int *winding; /* [n]: of a crossing, at the highest point below it */
+};
+
+static void visit_column(int t, void *context)
+{
+    struct column *column = context;
+    double height;
+    int winding = cross(column->stl, t, column->x, &height), low = 0, high = column->n;
+    if (winding == 0) return;
+    while (low < high) {
+        int middle = low + (high - low) / 2;
+        if (height > column->z[middle]) low = middle + 1;
+        else high = middle;
+    }
+    if (low > 0) column->winding[low - 1] += winding;
+}
+
+void solid_contains_column(const struct solid *solid, double x, double y, const double *z, int n, uint8_t *holds)
+{
+    double low[3] = {x, y, n > 0 ? z[0] : 0}, high[3] = {x, y, HUGE_VAL};
+    struct column column = {solid->stl, low, z, n, fail_alloc((size_t)n * sizeof(int))};
+    bvh_visit(solid->bvh, low, high, visit_column, &column);
+    for (int k = n - 1, sum = 0; k >= 0; k--) {
+        sum += column.winding[k];
+        holds[k] = sum != 0;
+    }
+    free(column.winding);
 }

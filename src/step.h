@@ -43,6 +43,6 @@ struct step_ops {
     void (*report_kernels)(const struct sim *s, struct report *r);         /* device time and number of launches, this rank's */
 };
 
-extern const struct step_ops particle_ops;
+extern const struct step_ops particle_ops, lattice_ops;
 
 #endif

@@ -34,6 +34,7 @@ static const struct kind_row {
     [UNIT_VOLUME] = {"volume", "m3", {3, 0, 0, 0}},
     [UNIT_POWER] = {"power", "W", {2, 1, -3, 0}},
     [UNIT_DAMPING] = {"damping coefficient", "N s/m", {0, 1, -1, 0}},
+    [UNIT_FRACTURE] = {"energy per area", "J/m2", {0, 1, -2, 0}},
 };
 
 /* A symbol is worth factor * 10^exponent of its SI unit. `prefixed`: k, m, u, ... may stand before it. */

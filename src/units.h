@@ -28,6 +28,7 @@ enum unit_kind {
     UNIT_VOLUME,
     UNIT_POWER,
     UNIT_DAMPING,
+    UNIT_FRACTURE,
     UNIT_KINDS
 };
 

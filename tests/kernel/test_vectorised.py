@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""test_vectorised COMPILE_FORCE: pocl turns the loop over work-items around the contact law into SIMD code, in full width.
+"""test_vectorised COMPILE_FORCE COMPILE_LATTICE: pocl turns the loop over work-items around the contact law into SIMD code, in full width.
 
 The force kernels have three loops (load, law, store); the middle one is where the time goes and the only one without vector types, so one loop that
 LLVM reports as vectorised is that one. Skipped (77) where the platform is not pocl or its LLVM says nothing about loops."""
@@ -18,6 +18,10 @@ CASES = [
     ("pair_force", "double", EQUAL + ["materials"]),
     ("pair_force", "double", ["spin", "hertz", "tangential", "damping", "epsd", "binding", "sizes"]),
     ("wall_force", "double", EQUAL + ["plane"]),
+    ("lattice", "double", ["small"]),
+    ("lattice", "single", ["small"]),
+    ("lattice", "double", ["turn", "volume"]),
+    ("lattice", "double", ["small", "volume", "rk4"]),
 ]
 
 
@@ -32,7 +36,8 @@ def vector_bytes():
 def remarks(kernel, precision, features):
     with tempfile.TemporaryDirectory() as cache:
         environment = dict(os.environ, POCL_VECTORIZER_REMARKS="1", POCL_CACHE_DIR=cache)
-        done = subprocess.run([sys.argv[1], kernel, precision, *features], env=environment, capture_output=True, text=True)
+        program = sys.argv[2 if kernel == "lattice" else 1]
+        done = subprocess.run([program, kernel, precision, *features], env=environment, capture_output=True, text=True)
     if done.returncode == 77:
         print(done.stdout.strip() + ": not pocl, or no doubles")
         sys.exit(77)

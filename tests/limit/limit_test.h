@@ -27,6 +27,12 @@
         if (!(value_ >= low_ && value_ <= high_)) fail_msg("%s is %.9g, not in %.9g ... %.9g", #value, value_, low_, high_);                         \
     } while (0)
 
+#define assert_below(value, limit)                                                                                                                   \
+    do {                                                                                                                                             \
+        double value_ = (double)(value), limit_ = (double)(limit);                                                                                   \
+        if (!(value_ < limit_)) fail_msg("%s is %.9g, not below %.9g", #value, value_, limit_);                                                      \
+    } while (0)
+
 static uint64_t limit_seed = 1;
 
 /* Uniform in [low, high). */

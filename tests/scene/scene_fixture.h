@@ -61,7 +61,7 @@ static inline void fixture_scene(struct fixture *f, const char *text)
     fixture_write(f, "scene.yaml", text, strlen(text));
 }
 
-/* Copies a scene of this test folder, beside two files that it may name. */
+/* Copies a scene of this test folder, beside files that it may name. */
 static inline void fixture_copy(struct fixture *f, const char *name)
 {
     char *from = fail_format(SCENES "/%s", name), text[8192];
@@ -73,6 +73,7 @@ static inline void fixture_copy(struct fixture *f, const char *name)
     fixture_write(f, "filling.stl", "", 0);
     fixture_write(f, "funnel.stl", "", 0);
     fixture_write(f, "bed.csv", "", 0);
+    fixture_write(f, "load.csv", "time,factor\n0,0.5\n1,2\n", 22);
     fixture_write(f, name, text, n);
 }
 

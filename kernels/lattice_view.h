@@ -1,0 +1,78 @@
+/* Lattice cells in device memory: runs of BATCH cells along x, one work-group each (src/lattice_layout.h). Bases of the neighbouring runs are uniform
+ * over the group, so all loads are contiguous. Planes: number k of cell i is at k * plane + i; x and v point to the first plane of the state. */
+#ifndef DEMOCLES_LATTICE_VIEW_H
+#define DEMOCLES_LATTICE_VIEW_H
+
+#include "batch.h"
+#include "lattice_state.h"
+
+struct lattice_view {
+    __global const preal *x;
+    __global const real *v;
+    __global const real *p; /* WITH_VOLUME: lambda Th [Pa] */
+    __global const int *word;
+    __global const real *link; /* table of LINK_WIDTH */
+    size_t plane, begin;       /* begin: of this run */
+    size_t base[4];            /* of the runs at -y, +y, -z, +z */
+    int n_kind;
+    struct link_constants k; /* of a run whose cells and neighbours are of one kind */
+};
+
+LAW struct link_cell lattice_cell(struct lattice_view s, size_t i)
+{
+    struct link_cell c;
+    c.u = p3(s.x[i], s.x[s.plane + i], s.x[2 * s.plane + i]);
+    c.theta = c.u;
+    c.q = quat_of(1, 0, 0, 0);
+    c.v = c.w = v3(0, 0, 0);
+    if (WITH_TURN) c.q = quat_of(s.x[3 * s.plane + i], s.x[4 * s.plane + i], s.x[5 * s.plane + i], s.x[6 * s.plane + i]);
+    else c.theta = p3(s.x[3 * s.plane + i], s.x[4 * s.plane + i], s.x[5 * s.plane + i]);
+    return c;
+}
+LAW struct link_cell lattice_moving(struct lattice_view s, size_t i, struct link_cell c)
+{
+    c.v = v3(s.v[i], s.v[s.plane + i], s.v[2 * s.plane + i]);
+    c.w = v3(s.v[3 * s.plane + i], s.v[4 * s.plane + i], s.v[5 * s.plane + i]);
+    return c;
+}
+
+/* Where the neighbour over a face of lane l is; anything may be there if there is no link. */
+LAW size_t lattice_beside(struct lattice_view s, int face, size_t l)
+{
+    return face == 0 ? s.begin + l - 1 : face == 1 ? s.begin + l + 1 : s.base[face - 2] + l;
+}
+
+/* Constants of the link over a face: of the run, or (`mixed`) of the two cells' kinds. */
+LAW struct link_constants lattice_constants(struct lattice_view s, int face, int mixed, int word, size_t j)
+{
+    struct link_constants k = s.k;
+    if (WITH_KINDS && mixed) {
+        int me = LATTICE_KIND(word), other = LATTICE_KIND(s.word[j]);
+        __global const real *row = s.link + (size_t)(face & 1 ? me * s.n_kind + other : other * s.n_kind + me) * LINK_WIDTH;
+        LATTICE_CONSTANTS(k, row);
+    }
+    return k;
+}
+
+LAW struct lattice_view lattice_view_of(__global const preal *x, __global const real *v, __global const int *word, __global const real *link,
+    __global const int *base, int run, int n_run, int n_kind, int kind, size_t plane)
+{
+    struct lattice_view s;
+    __global const real *row = link + (size_t)(kind * n_kind + kind) * LINK_WIDTH;
+    s.x = x;
+    s.v = v;
+    s.p = 0;
+    s.word = word;
+    s.link = link;
+    s.plane = plane;
+    s.begin = (size_t)run * BATCH;
+    s.base[0] = (size_t)base[run];
+    s.base[1] = (size_t)base[n_run + run];
+    s.base[2] = (size_t)base[2 * n_run + run];
+    s.base[3] = (size_t)base[3 * n_run + run];
+    s.n_kind = n_kind;
+    LATTICE_CONSTANTS(s.k, row);
+    return s;
+}
+
+#endif

@@ -1,0 +1,22 @@
+/* Numbers that host and kernels of the lattice agree on.
+ *
+ * Word of a cell: bits 0-5 its links (-x, +x, -y, +y, -z, +z), 6-11 its fixed DOF (x, y, z, and rotation about them), 12 whether this rank owns it,
+ * 16-23 its kind. Planes of x: u(3), then q (w, x, y, z) or theta(3); of v: v(3), w(3). */
+#ifndef DEMOCLES_LATTICE_WORDS_H
+#define DEMOCLES_LATTICE_WORDS_H
+
+#define WORD_FIX 6
+#define WORD_OWNED 12
+#define WORD_KIND 16
+
+#define LATTICE_X(with_turn) ((with_turn) ? 7 : 6)
+#define LATTICE_V 6
+
+/* Rows of tables of real. */
+#define LINK_WIDTH 8 /* kn ks kt kb r_i r_j h eta; row: kind of the lower cell times n_kind + kind of the higher */
+#define CELL_WIDTH 8 /* 1/m [1/kg], 1/J [1/(kg m2)], lambda [Pa], 1/(4 G) [1/Pa], 1/(2 h) [1/m], eta [s], alpha [1/s], h^3 [m3]; row: kind */
+#define KICK_WIDTH 4 /* f g of the kick that ends a step, f g of the one that begins the next; row: kind */
+/* Info of a run: its kind, and this if its cells have to be looked at one by one. */
+#define RUN_MIXED 256
+
+#endif

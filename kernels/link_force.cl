@@ -1,0 +1,266 @@
+/* The lattice: forces of the six links of each owned cell, loads, and the cell's next state, in one pass. No atomics, no sums across cells: each link
+ * is evaluated at both ends, from exact copies, in the same order.
+ *
+ * One work-group per run of BATCH cells (lattice_view.h). Positions go from one set of planes to another, since neighbours still read the old ones;
+ * velocities stay in place unless links are damped. A run of one material without loads or fixed DOF needs no table per cell and has a loop of its
+ * own.
+ *
+ * lint: WITH_SHEAR_APART requires WITH_VOLUME */
+#include "lattice_view.h"
+
+/* Accelerations of a cell, and what holds it. */
+struct lattice_pull {
+    vec3 a, b;               /* [m/s2] [rad/s2] */
+    vec3 given_v, given_w;   /* of fixed DOF [m/s] [rad/s] */
+};
+
+LAW struct link_share lattice_face(int face, int mixed, struct lattice_view s, size_t l, int word, struct link_cell me)
+{
+    size_t i = s.begin + l, j = lattice_beside(s, face, l);
+    struct link_cell other = lattice_cell(s, j);
+    real p_me = 0, p_other = 0;
+    if (WITH_LINK_DAMPING) other = lattice_moving(s, j, other);
+    if (WITH_VOLUME) {
+        p_me = s.p[i];
+        p_other = s.p[j];
+    }
+    return lattice_link(face, LATTICE_LINKS(word) >> face & 1, me, other, lattice_constants(s, face, mixed, word, j), p_me, p_other);
+}
+
+/* The six links in the order of the mask. */
+LAW struct link_share lattice_links(int mixed, struct lattice_view s, size_t l, int word, struct link_cell me)
+{
+    struct link_share sum = lattice_face(0, mixed, s, l, word, me);
+    sum = lattice_add(sum, lattice_face(1, mixed, s, l, word, me));
+    sum = lattice_add(sum, lattice_face(2, mixed, s, l, word, me));
+    sum = lattice_add(sum, lattice_face(3, mixed, s, l, word, me));
+    sum = lattice_add(sum, lattice_face(4, mixed, s, l, word, me));
+    return lattice_add(sum, lattice_face(5, mixed, s, l, word, me));
+}
+
+LAW struct lattice_pull lattice_pull_of(int mixed, struct lattice_view s, size_t l, int word, struct link_cell me, __global const real *cell,
+                                        __global const int *row, __global const real *rows, vec3 gravity)
+{
+    struct lattice_pull r;
+    struct link_share sum = lattice_links(mixed, s, l, word, me);
+    vec3 add = gravity;
+    r.given_v = r.given_w = v3(0, 0, 0);
+    if (WITH_LOADS && mixed) {
+        struct lattice_load load;
+        __global const real *at = rows + (size_t)row[s.begin + l] * LOAD_WIDTH;
+        LATTICE_LOAD(load, at);
+        sum = lattice_load_add(sum, me, load);
+        add = WITH_GRAVITY ? v3_add(gravity, load.acceleration) : load.acceleration;
+        r.given_v = load.v;
+        r.given_w = load.w;
+    }
+    r.a = WITH_GRAVITY || (WITH_LOADS && mixed) ? v3_fma(cell[0], sum.force, add) : v3_scale(cell[0], sum.force);
+    r.b = v3_scale(cell[1], sum.torque);
+    return r;
+}
+
+LAW void lattice_keep(__global preal *x, __global real *v, size_t plane, size_t i, struct link_cell c)
+{
+    x[i] = c.u.x;
+    x[plane + i] = c.u.y;
+    x[2 * plane + i] = c.u.z;
+    if (WITH_TURN) {
+        x[3 * plane + i] = c.q.w;
+        x[4 * plane + i] = c.q.v.x;
+        x[5 * plane + i] = c.q.v.y;
+        x[6 * plane + i] = c.q.v.z;
+    } else {
+        x[3 * plane + i] = c.theta.x;
+        x[4 * plane + i] = c.theta.y;
+        x[5 * plane + i] = c.theta.z;
+    }
+    v[i] = c.v.x;
+    v[plane + i] = c.v.y;
+    v[2 * plane + i] = c.v.z;
+    v[3 * plane + i] = c.w.x;
+    v[4 * plane + i] = c.w.y;
+    v[5 * plane + i] = c.w.z;
+}
+
+#if !WITH_RK
+/* Kick, kick, drift. `kick`: row of the table for the cell's kind. */
+LAW struct link_cell lattice_move(int mixed, struct link_cell c, struct lattice_pull pull, int word, __global const real *kick, preal drift)
+{
+    c.v = lattice_kick(c.v, pull.a, kick[0], kick[1]);
+    c.v = lattice_kick(c.v, pull.a, kick[2], kick[3]);
+    c.w = lattice_kick(c.w, pull.b, kick[0], kick[1]);
+    c.w = lattice_kick(c.w, pull.b, kick[2], kick[3]);
+    if ((WITH_FIX || WITH_LOADS) && mixed) {
+        c.v = lattice_hold(c.v, word, WORD_FIX, pull.given_v);
+        c.w = lattice_hold(c.w, word, WORD_FIX + 3, pull.given_w);
+    }
+    return lattice_drift(c, drift);
+}
+#else
+LAW struct lattice_sums lattice_sums_of(__global const preal *sum_x, __global const real *sum_v, size_t plane, size_t i, int is_first)
+{
+    struct lattice_sums s;
+    s.u = p3(sum_x[i], sum_x[plane + i], sum_x[2 * plane + i]);
+    s.turn = p3(sum_x[3 * plane + i], sum_x[4 * plane + i], sum_x[5 * plane + i]);
+    s.r = p3(0, 0, 0);
+    if (WITH_TURN) s.r = p3(sum_x[6 * plane + i], sum_x[7 * plane + i], sum_x[8 * plane + i]);
+    s.v = v3(sum_v[i], sum_v[plane + i], sum_v[2 * plane + i]);
+    s.w = v3(sum_v[3 * plane + i], sum_v[4 * plane + i], sum_v[5 * plane + i]);
+    return is_first ? lattice_sums_zero() : s;
+}
+
+LAW void lattice_sums_keep(__global preal *sum_x, __global real *sum_v, size_t plane, size_t i, struct lattice_sums s)
+{
+    sum_x[i] = s.u.x;
+    sum_x[plane + i] = s.u.y;
+    sum_x[2 * plane + i] = s.u.z;
+    sum_x[3 * plane + i] = s.turn.x;
+    sum_x[4 * plane + i] = s.turn.y;
+    sum_x[5 * plane + i] = s.turn.z;
+    if (WITH_TURN) {
+        sum_x[6 * plane + i] = s.r.x;
+        sum_x[7 * plane + i] = s.r.y;
+        sum_x[8 * plane + i] = s.r.z;
+    }
+    sum_v[i] = s.v.x;
+    sum_v[plane + i] = s.v.y;
+    sum_v[2 * plane + i] = s.v.z;
+    sum_v[3 * plane + i] = s.w.x;
+    sum_v[4 * plane + i] = s.w.y;
+    sum_v[5 * plane + i] = s.w.z;
+}
+
+/* alpha: mass-proportional damping of the cell's kind [1/s]. */
+LAW struct link_cell lattice_advance(int mixed, struct link_cell c, struct link_cell start, struct lattice_pull pull, int word, real alpha,
+                                     struct lattice_stage stage, struct lattice_sums *sum)
+{
+    vec3 zero = v3(0, 0, 0);
+    int held = (WITH_FIX || WITH_LOADS) && mixed;
+    if (held) {
+        c.v = lattice_hold(c.v, word, WORD_FIX, pull.given_v);
+        c.w = lattice_hold(c.w, word, WORD_FIX + 3, pull.given_w);
+    }
+    if (WITH_MASS_DAMPING) {
+        pull.a = v3_fma(-alpha, c.v, pull.a);
+        pull.b = v3_fma(-alpha, c.w, pull.b);
+    }
+    if (held) {
+        pull.a = lattice_hold(pull.a, word, WORD_FIX, zero);
+        pull.b = lattice_hold(pull.b, word, WORD_FIX + 3, zero);
+    }
+    c = lattice_stage_next(c, start, pull.a, pull.b, stage, sum);
+    if (held) {
+        c.v = lattice_hold(c.v, word, WORD_FIX, pull.given_v);
+        c.w = lattice_hold(c.w, word, WORD_FIX + 3, pull.given_w);
+    }
+    return c;
+}
+#endif
+
+/* One cell of the run. */
+#if WITH_RK
+#define NEXT(mixed, kind)                                                                                                                            \
+    struct lattice_view s0 = s;                                                                                                                      \
+    s0.x = x + start_x;                                                                                                                              \
+    s0.v = v + start_v;                                                                                                                              \
+    struct link_cell start = lattice_moving(s0, i, lattice_cell(s0, i));                                                                             \
+    struct lattice_sums sum = lattice_sums_of(sum_x, sum_v, s.plane, i, stage.is_first);                                                             \
+    c = lattice_advance(mixed, c, start, pull, word_i, cell[(kind)*CELL_WIDTH + 6], stage, &sum);                                                    \
+    lattice_sums_keep(sum_x, sum_v, s.plane, i, sum)
+#else
+#define NEXT(mixed, kind) c = lattice_move(mixed, c, pull, word_i, kick + (kind)*KICK_WIDTH, drift)
+#endif
+#if WITH_LOADS
+#define ROWS row, rows + at_rows
+#else
+#define ROWS 0, 0
+#endif
+#define RUN(mixed, kind)                                                                                                                             \
+    BATCH_VECTOR                                                                                                                                     \
+    FOR_BATCH (l, BATCH) {                                                                                                                           \
+        size_t i = s.begin + l;                                                                                                                      \
+        int word_i = word[i];                                                                                                                        \
+        struct link_cell c = lattice_moving(s, i, lattice_cell(s, i));                                                                               \
+        struct lattice_pull pull = lattice_pull_of(mixed, s, l, word_i, c, cell + (kind)*CELL_WIDTH, ROWS, gravity);                                 \
+        NEXT(mixed, kind);                                                                                                                           \
+        lattice_keep(x + x_out, v + v_out, s.plane, i, c);                                                                                           \
+    }
+
+/* Runs list[first] to list[first + n - 1]. info: of runs (RUN_MIXED). x_in, x_out, v_in, v_out: first
+ * numbers of sets of planes. */
+__kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1)))
+void link_force(int first, int n, __global const int *list, __global const int *info, __global const int *base, __global const int *word,
+                int n_run, int n_kind, long plane, __global preal *restrict x, long x_in, long x_out, __global real *restrict v, long v_in,
+                long v_out,
+                __global const real *link, __global const real *cell,
+#if WITH_VOLUME
+                __global const real *p,
+#endif
+#if WITH_GRAVITY
+                real gravity_x, real gravity_y, real gravity_z,
+#endif
+#if WITH_LOADS
+                __global const int *row, __global const real *rows, int at_rows,
+#endif
+#if WITH_RK
+                long start_x, long start_v, __global preal *restrict sum_x, __global real *restrict sum_v, preal c_sum_v, preal c_sum_a,
+                preal c_next_v, preal c_next_a, preal c_next_turn, preal c_sum_turn, real c_sum_k, real c_next_k, int is_first, int is_last,
+                int is_nystrom
+#else
+                __global const real *kick_table, int at_kick, preal drift
+#endif
+)
+{
+    if (get_group_id(0) >= (size_t)n) return;
+    int run = list[first + get_group_id(0)], what = info[run];
+    struct lattice_view s = lattice_view_of(x + x_in, v + v_in, word, link, base, run, n_run, n_kind, what & (RUN_MIXED - 1), (size_t)plane);
+    vec3 gravity = v3(0, 0, 0);
+#if WITH_VOLUME
+    s.p = p;
+#endif
+#if WITH_GRAVITY
+    gravity = v3(gravity_x, gravity_y, gravity_z);
+#endif
+#if WITH_RK
+    struct lattice_stage stage = {c_sum_v, c_sum_a, c_next_v, c_next_a, c_next_turn, c_sum_turn, c_sum_k, c_next_k, is_first, is_last, is_nystrom};
+#else
+    __global const real *kick = kick_table + at_kick;
+#endif
+    if ((WITH_KINDS || WITH_FIX || WITH_LOADS) && what >= RUN_MIXED) {
+        RUN(1, LATTICE_KIND(word_i))
+    } else {
+        int kind = what & (RUN_MIXED - 1);
+        RUN(0, kind)
+    }
+}
+
+#if !WITH_RK
+/* A drift that no force precedes, in place. */
+__kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1)))
+void lattice_first(int first, int n, __global const int *list, __global const int *word, long plane, __global preal *restrict x, long x_in,
+                   __global real *restrict v, long v_in,
+#if WITH_LOADS
+                   __global const int *row, __global const real *rows, int at_rows,
+#endif
+                   preal drift)
+{
+    if (get_group_id(0) >= (size_t)n) return;
+    struct lattice_view s;
+    s.plane = (size_t)plane;
+    s.begin = (size_t)list[first + get_group_id(0)] * BATCH;
+    s.x = x + x_in;
+    s.v = v + v_in;
+    BATCH_VECTOR
+    FOR_BATCH (l, BATCH) {
+        size_t i = s.begin + l;
+        struct link_cell c = lattice_moving(s, i, lattice_cell(s, i));
+#if WITH_LOADS
+        __global const real *at = rows + at_rows + (size_t)row[i] * LOAD_WIDTH + LOAD_VELOCITY;
+        c.v = lattice_hold(c.v, word[i], WORD_FIX, LATTICE_VEC(at, 0));
+        c.w = lattice_hold(c.w, word[i], WORD_FIX + 3, LATTICE_VEC(at, 3));
+#endif
+        lattice_keep(x + x_in, v + v_in, s.plane, i, lattice_drift(c, drift));
+    }
+    (void)word;
+}
+#endif

@@ -1,0 +1,60 @@
+/* The volumetric pass: p = lambda Th of each cell, from its six links. Runs as link_force.cl. Ghosts that owned cells are linked to get theirs here
+ * too, from their own neighbours, in the same order as on the rank that owns them. */
+#include "lattice_view.h"
+
+LAW real lattice_part(int face, int mixed, struct lattice_view s, size_t l, int word, struct link_cell me, real eta)
+{
+    size_t j = lattice_beside(s, face, l);
+    struct link_cell other = lattice_cell(s, j);
+    if (WITH_LINK_DAMPING) other = lattice_moving(s, j, other);
+    return lattice_stretch(face, word >> face & 1, me, other, lattice_constants(s, face, mixed, word, j), eta);
+}
+
+LAW real lattice_pressure(int mixed, struct lattice_view s, size_t l, int word, __global const real *cell, real traction)
+{
+    struct volume_constants c;
+    struct link_cell me = lattice_cell(s, s.begin + l);
+    real eta = cell[5], sum;
+    if (WITH_LINK_DAMPING) me = lattice_moving(s, s.begin + l, me);
+    sum = lattice_part(0, mixed, s, l, word, me, eta);
+    sum += lattice_part(1, mixed, s, l, word, me, eta);
+    sum += lattice_part(2, mixed, s, l, word, me, eta);
+    sum += lattice_part(3, mixed, s, l, word, me, eta);
+    sum += lattice_part(4, mixed, s, l, word, me, eta);
+    sum += lattice_part(5, mixed, s, l, word, me, eta);
+    c.lambda = cell[2];
+    c.per_4g = cell[3];
+    c.per_2h = cell[4];
+    c.volume = cell[7];
+    return c.lambda * volume_strain(sum, traction, word & 63, c);
+}
+
+#if WITH_LOADS
+#define TRACTION(i) rows[at_rows + row[i] * LOAD_WIDTH + LOAD_TRACTION]
+#else
+#define TRACTION(i) 0
+#endif
+
+__kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1)))
+void link_volume(int first, int n, __global const int *list, __global const int *info, __global const int *base, __global const int *word,
+                 int n_run, int n_kind, long plane, __global const preal *x, long x_in, __global const real *v, long v_in,
+                 __global const real *link, __global const real *cell,
+#if WITH_LOADS
+                 __global const int *row, __global const real *rows, int at_rows,
+#endif
+                 __global real *restrict p)
+{
+    if (get_group_id(0) >= (size_t)n) return;
+    int run = list[first + get_group_id(0)], what = info[run], kind = what & (RUN_MIXED - 1);
+    struct lattice_view s = lattice_view_of(x + x_in, v + v_in, word, link, base, run, n_run, n_kind, kind, (size_t)plane);
+    if ((WITH_KINDS || WITH_LOADS) && what >= RUN_MIXED) {
+        BATCH_VECTOR
+        FOR_BATCH (l, BATCH) {
+            size_t i = s.begin + l;
+            p[i] = lattice_pressure(1, s, l, word[i], cell + LATTICE_KIND(word[i]) * CELL_WIDTH, (real)TRACTION(i));
+        }
+    } else {
+        BATCH_VECTOR
+        FOR_BATCH (l, BATCH) p[s.begin + l] = lattice_pressure(0, s, l, word[s.begin + l], cell + kind * CELL_WIDTH, (real)0);
+    }
+}

@@ -1,0 +1,52 @@
+/* What a lattice needs of the kernels, and the tables of constants that they read. Knows no device. */
+#ifndef DEMOCLES_LATTICE_FEATURES_H
+#define DEMOCLES_LATTICE_FEATURES_H
+
+#include <stdbool.h>
+
+#include "lattice_cells.h"
+#include "lattice_schemes.h"
+
+/* Rows of loads at time t [s], double [n_row][LOAD_WIDTH]; velocities as means over [from, to] [s], or their values if from == to. */
+typedef void lattice_rows_at(void *context, double t, double from, double to, double *rows);
+
+struct lattice_options {
+    double dt; /* [s] */
+    enum lattice_scheme scheme;
+    bool turn; /* any rotation, else small ones */
+    bool real_is_float, position_is_float;
+    double gravity[3]; /* [m/s2] */
+    enum link_set set;
+    const struct link_material *material; /* [n_material], with damping of links; borrowed for the lattice's life */
+    const double *alpha;                  /* [n_material] mass-proportional damping [1/s]; NULL: none */
+    int n_material;
+    int n_row; /* rows of loads; up to 1: no loads */
+    lattice_rows_at *rows_at;
+    void *context;
+    int run; /* length of runs: 16, 32 or 64; 0: what suits the body */
+};
+
+struct lattice_features {
+    bool real_is_float, position_is_float;
+    bool turn;                     /* any rotation */
+    bool volume;                   /* some Poisson's ratio is not 0 */
+    bool shear_apart, twist_apart; /* links with kn != ks, kt != kb */
+    bool link_damping, mass_damping;
+    bool fix, loads, gravity;
+    bool kinds; /* more than one */
+    bool rk;    /* stages of a Runge-Kutta scheme */
+};
+
+struct lattice_features lattice_features_of(const struct lattice_cells *cells, const struct lattice_options *o);
+/* Names and values, for run.json and `check`: i = 0, 1, ... until the name is NULL. */
+const char *lattice_features_name(int i);
+bool lattice_features_value(const struct lattice_features *features, int i);
+/* Build options; the caller frees. */
+char *lattice_features_options(const struct lattice_features *f, int run);
+/* Tables of kernels/lattice_state.h; the caller frees: links [n_kind][n_kind][LINK_WIDTH], cells [n_kind][CELL_WIDTH]. */
+double *lattice_features_links(const struct lattice_cells *cells, const struct lattice_options *o);
+double *lattice_features_cells(const struct lattice_cells *cells, const struct lattice_options *o);
+/* Kicks [n + 2][n_kind][KICK_WIDTH] of a splitting: its evaluations; the first that ends a step only; the first that begins one only. */
+double *lattice_features_kicks(const struct lattice_cells *cells, const struct lattice_options *o);
+
+#endif

@@ -1,0 +1,155 @@
+/* Frames of the lattice: a hexahedron per cell, at its place at the start, with the displacement of its corners to warp by. */
+#include "lattice_method.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "fail.h"
+#include "snapshot.h"
+
+enum { CORNERS = 8, FIELDS = 16 };
+
+struct lattice_state *lattice_state_create(const struct sim *s)
+{
+    const struct lattice *l = s->solid->lattice;
+    struct lattice_state *t = fail_alloc(sizeof *t);
+    size_t n = (size_t)l->layout->n_owned;
+    double(*theta)[3] = fail_alloc(n * sizeof *theta);
+    t->n = (int64_t)n;
+    t->gid = l->layout->gid;
+    t->turn_width = l->features.turn ? 4 : 3;
+    t->centre = fail_alloc(n * sizeof *t->centre);
+    t->u = fail_alloc(n * sizeof *t->u);
+    t->turn = fail_alloc(n * sizeof *t->turn);
+    t->v = fail_alloc(n * sizeof *t->v);
+    t->w = fail_alloc(n * sizeof *t->w);
+    struct lattice_motion m = {.u = t->u, .v = t->v, .w = t->w};
+    if (l->features.turn) m.q = t->turn;
+    else m.theta = theta;
+    lattice_read(l, &m);
+    for (size_t i = 0; i < n; i++) {
+        lattice_cells_centre(s->solid->cells, t->gid[i], t->centre[i]);
+        if (!l->features.turn) memcpy(t->turn[i], theta[i], sizeof theta[i]);
+    }
+    free(theta);
+    return t;
+}
+
+void lattice_state_free(struct lattice_state *t)
+{
+    if (!t) return;
+    void *own[] = {t->centre, t->u, t->turn, t->v, t->w, t};
+    for (int k = 0; k < 6; k++) free(own[k]);
+}
+
+static void cross(const double a[3], const double b[3], double out[3])
+{
+    for (int k = 0; k < 3; k++) out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+}
+
+void lattice_state_turn(const struct lattice_state *t, int64_t i, const double r[3], double out[3])
+{
+    if (t->turn_width == 3) {
+        cross(t->turn[i], r, out);
+        return;
+    }
+    double once[3], twice[3];
+    cross(t->turn[i] + 1, r, once);
+    cross(t->turn[i] + 1, once, twice);
+    for (int k = 0; k < 3; k++) out[k] = 2 * (t->turn[i][0] * once[k] + twice[k]);
+}
+
+/* Corners in VTK's order, and their displacements. */
+static void corners(const struct sim *s, const struct lattice_state *t, double (*x)[3], double (*u)[3])
+{
+    static const int corner[CORNERS][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}};
+    const struct lattice_cells *c = s->solid->cells;
+    for (int64_t i = 0; i < t->n; i++) {
+        double half = 0.5 * c->grid[c->kind[c->kind_of[t->gid[i]]].grid].h, r[3], turned[3];
+        for (int k = 0; k < CORNERS; k++) {
+            for (int a = 0; a < 3; a++) r[a] = half * corner[k][a];
+            lattice_state_turn(t, i, r, turned);
+            for (int a = 0; a < 3; a++) {
+                x[CORNERS * i + k][a] = t->centre[i][a] + r[a];
+                u[CORNERS * i + k][a] = t->u[i][a] + turned[a];
+            }
+        }
+    }
+}
+
+/* By cell, for the picture: integers that do not change. */
+static int32_t *integers(const struct sim *s, const struct lattice_state *t, const char *name)
+{
+    const struct lattice_cells *c = s->solid->cells;
+    int32_t *value = fail_alloc((size_t)t->n * sizeof *value);
+    for (int64_t i = 0; i < t->n; i++) {
+        int64_t g = t->gid[i];
+        value[i] = !strcmp(name, "body") ? c->body[g] : !strcmp(name, "owner") ? s->comm->rank : c->kind[c->kind_of[g]].material;
+    }
+    return value;
+}
+
+/* Columns under construction, and the memory that they own. */
+struct fields {
+    struct column column[FIELDS];
+    int n, n_own;
+    void *own[FIELDS];
+};
+
+static void add(struct fields *f, const char *name, const char *unit, const char *text, enum column_type type, int width, const void *data)
+{
+    f->column[f->n++] = (struct column){name, unit, text, type, width, data};
+}
+
+static void shown_fields(const struct sim *s, const struct lattice_state *t, struct fields *f)
+{
+    for (int k = 0; k < s->scene->output.n_field; k++) {
+        const char *name = s->scene->output.field[k];
+        if (!strcmp(name, "displacement")) continue; /* by corner */
+        if (!strcmp(name, "velocity")) add(f, "velocity", "m/s", "velocity of the centre", COLUMN_F64, 3, t->v);
+        else if (!strcmp(name, "angular_velocity")) add(f, "angular_velocity", "rad/s", "angular velocity", COLUMN_F64, 3, t->w);
+        else if (!strcmp(name, "rotation"))
+            add(f, "rotation", t->turn_width == 4 ? "1" : "rad", t->turn_width == 4 ? "quaternion w, x, y, z" : "small rotation about x, y, z, and 0",
+                COLUMN_F64, 4, t->turn);
+        else if (!strcmp(name, "id")) add(f, "id", "1", "global id", COLUMN_I64, 1, t->gid);
+        else {
+            f->own[f->n_own] = integers(s, t, name);
+            add(f, name, "1", "index in the scene; owner: rank", COLUMN_I32, 1, f->own[f->n_own++]);
+        }
+    }
+}
+
+void lattice_method_frame(struct sim *s, int64_t index)
+{
+    struct lattice_state *t = lattice_state_create(s);
+    size_t n = (size_t)t->n;
+    double(*x)[3] = fail_alloc(CORNERS * n * sizeof *x), (*u)[3] = fail_alloc(CORNERS * n * sizeof *u);
+    struct fields shown = {.n = 0}, state = {.n = 0};
+    corners(s, t, x, u);
+    const struct column point[] = {{"position", "m", "corners of the cells at the start", COLUMN_F64, 3, x},
+        {"displacement", "m", "displacement of the corners", COLUMN_F64, 3, u}};
+    shown_fields(s, t, &shown);
+    add(&state, "id", "1", "global id", COLUMN_I64, 1, t->gid);
+    add(&state, "displacement", "m", "displacement of the centre", COLUMN_F64, 3, t->u);
+    add(&state, "rotation", t->turn_width == 4 ? "1" : "rad", "quaternion w, x, y, z, or a small rotation and 0", COLUMN_F64, 4, t->turn);
+    add(&state, "velocity", "m/s", "velocity of the centre", COLUMN_F64, 3, t->v);
+    add(&state, "angular_velocity", "rad/s", "angular velocity", COLUMN_F64, 3, t->w);
+    struct table table = {"cells", t->n, state.column, state.n};
+    struct frame_scalar scalar = {"dt", COLUMN_F64, s->dt, 0};
+    struct frame frame = {.step = s->step,
+        .time = (double)s->step * s->dt,
+        .index = index,
+        .points = {"points", CORNERS * t->n, point, 2},
+        .hexahedra = true,
+        .cells = {"cells", t->n, shown.column, shown.n},
+        .state = &table,
+        .n_state = 1,
+        .resolved = s->scene->resolved,
+        .scalar = &scalar,
+        .n_scalar = 1};
+    snapshot_write(s->comm, s->options->dir, &frame);
+    for (int k = 0; k < shown.n_own; k++) free(shown.own[k]);
+    free(x);
+    free(u);
+    lattice_state_free(t);
+}

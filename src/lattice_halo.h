@@ -1,0 +1,33 @@
+/* Ghosts of the lattice: fetched before each evaluation of the forces, while the device works on cells that need none. The order of calls, and why
+ * the copy of arrivals cannot overtake what still reads the ones before, is that of ghosts.h. Knows records and indices, no physics. */
+#ifndef DEMOCLES_LATTICE_HALO_H
+#define DEMOCLES_LATTICE_HALO_H
+
+#include "../comm/halo.h"
+#include "lattice_layout.h"
+#include "launch.h"
+#include "timer.h"
+
+struct lattice_halo {
+    const struct comm *comm;
+    struct halo *halo;
+    int64_t n_send, n_recv;
+    size_t record; /* bytes */
+    struct buffer send, recv, packed, arrived, send_staging, recv_staging;
+    struct launch *pack, *unpack;
+    cl_event packed_event, read_event, written_event;
+};
+
+/* n_x, n_v: numbers of each cell that travel, of so many bytes each. x, v: the buffers that hold them. Collective. */
+struct lattice_halo *lattice_halo_create(struct device *dev, const struct comm *comm, const struct program *program,
+    const struct lattice_layout *layout, const struct buffer *x, int n_x, size_t x_bytes, const struct buffer *v, int n_v, size_t v_bytes);
+void lattice_halo_free(struct device *dev, struct lattice_halo *h);
+
+/* Packs from the sets of planes that begin with numbers x_in and v_in; posts receives. */
+void lattice_halo_begin(struct device *dev, struct lattice_halo *h, int64_t x_in, int64_t v_in);
+/* After the interior's kernels are enqueued. */
+void lattice_halo_read(struct device *dev, struct lattice_halo *h);
+/* Sends, waits for arrivals, enqueues what puts them in place. `most`: event of the larger part of the interior's kernels, released here. */
+void lattice_halo_swap(struct device *dev, struct lattice_halo *h, cl_event *most, struct timers *timers);
+
+#endif

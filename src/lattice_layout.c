@@ -1,0 +1,235 @@
+#include "lattice_layout.h"
+
+#include <assert.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../kernels/lattice_words.h"
+#include "fail.h"
+#include "lattice_places.h"
+
+/* What a run costs beside its places, in places. */
+enum { RUN_COST = 6 };
+/* Planes begin this many cells beyond a multiple of 1024: aligned for any vector, and in different sets of a cache. */
+enum { PLANE_SHIFT = 80 };
+enum { NOTHING, OWNED, FIRST_GHOST, SECOND_GHOST };
+
+struct build {
+    const struct lattice_cells *cells;
+    const int *owner;
+    int rank, n_rank, depth;
+    struct lattice_places *places;
+    uint8_t *mark; /* [n] */
+    int *local;    /* [places->n_run] number on this rank, 0: not here */
+    struct lattice_layout *l;
+};
+
+int lattice_layout_run(const struct lattice_cells *cells)
+{
+    int best = 16;
+    int64_t cost = INT64_MAX;
+    for (int run = 16; run <= 64; run *= 2) {
+        int64_t c = lattice_places_count(cells, run) * (run + RUN_COST);
+        if (c <= cost) best = run;
+        if (c <= cost) cost = c;
+    }
+    return best;
+}
+
+/* The linked neighbour, or -1. */
+static int64_t linked(const struct build *b, int64_t gid, int face)
+{
+    if (!(b->cells->bits[gid] & CELL_LINK(face))) return -1;
+    int64_t j = lattice_places_neighbour(b->places, b->cells, gid, face);
+    assert(j >= 0);
+    return j;
+}
+
+static void mark(struct build *b)
+{
+    b->mark = fail_alloc((size_t)b->cells->n);
+    for (int64_t i = 0; i < b->cells->n; i++) b->mark[i] = b->owner[i] == b->rank ? OWNED : NOTHING;
+    for (int layer = OWNED; layer <= b->depth; layer++)
+        for (int64_t i = 0; i < b->cells->n; i++)
+            for (int f = 0; f < 6 && b->mark[i] == layer; f++) {
+                int64_t j = linked(b, i, f);
+                if (j >= 0 && b->mark[j] == NOTHING) b->mark[j] = (uint8_t)(layer + 1);
+            }
+}
+
+static int index_of(const struct build *b, int64_t gid)
+{
+    int run = b->places->run_of[gid], lane = b->cells->at[gid][0] - b->places->place[run].x * b->places->run;
+    return b->local[run] * b->places->run + lane;
+}
+
+static void number_runs(struct build *b)
+{
+    struct lattice_layout *l = b->l;
+    int n = 1;
+    b->local = fail_alloc((size_t)b->places->n_run * sizeof *b->local);
+    for (int64_t i = 0; i < b->cells->n; i++)
+        if (b->mark[i]) b->local[b->places->run_of[i]] = 1;
+    for (int r = 0; r < b->places->n_run; r++)
+        if (b->local[r]) b->local[r] = n++;
+    l->run = b->places->run;
+    l->n_run = n + 1;
+    l->plane = ((int64_t)l->n_run * l->run + 1023 - PLANE_SHIFT) / 1024 * 1024 + PLANE_SHIFT;
+    l->base = fail_alloc(4 * (size_t)l->n_run * sizeof *l->base);
+    for (int r = 0; r < b->places->n_run; r++)
+        for (int f = 0; f < 4 && b->local[r]; f++) {
+            int beside = lattice_places_beside(b->places, r, 1 + f / 2, f % 2 ? 1 : -1);
+            if (beside >= 0) l->base[f * l->n_run + b->local[r]] = b->local[beside] * l->run;
+        }
+}
+
+static void fill_words(struct build *b)
+{
+    struct lattice_layout *l = b->l;
+    l->word = fail_alloc((size_t)l->plane * sizeof *l->word);
+    l->row = fail_alloc((size_t)l->plane * sizeof *l->row);
+    l->gid = fail_alloc((size_t)b->cells->n * sizeof *l->gid);
+    l->index = fail_alloc((size_t)b->cells->n * sizeof *l->index);
+    for (int64_t i = 0; i < b->cells->n; i++) {
+        if (!b->mark[i]) continue;
+        int at = index_of(b, i), has_links = b->mark[i] <= FIRST_GHOST;
+        l->word[at] = (has_links ? b->cells->bits[i] & 63 : 0) | (b->cells->bits[i] & 63 << WORD_FIX) | (b->mark[i] == OWNED) << WORD_OWNED |
+                      b->cells->kind_of[i] << WORD_KIND;
+        l->row[at] = b->cells->row ? b->cells->row[i] : 0;
+        if (b->mark[i] != OWNED) continue;
+        l->gid[l->n_owned] = i;
+        l->index[l->n_owned++] = at;
+    }
+}
+
+/* Whether a run is of one kind, neighbours included, without loads and fixed DOF. */
+static void fill_info(struct build *b)
+{
+    struct lattice_layout *l = b->l;
+    l->info = fail_alloc((size_t)l->n_run * sizeof *l->info);
+    for (int r = 0; r < l->n_run; r++) l->info[r] = -1;
+    for (int64_t i = 0; i < b->cells->n; i++) {
+        if (b->mark[i] != OWNED && b->mark[i] != FIRST_GHOST) continue;
+        int *info = &l->info[b->local[b->places->run_of[i]]], kind = b->cells->kind_of[i];
+        if (*info < 0) *info = kind;
+        bool apart = (*info & (RUN_MIXED - 1)) != kind || b->cells->bits[i] >> WORD_FIX || (b->cells->row && b->cells->row[i]);
+        for (int f = 0; f < 6; f++) {
+            int64_t j = linked(b, i, f);
+            apart |= j >= 0 && b->cells->kind_of[j] != kind;
+        }
+        if (apart) *info |= RUN_MIXED;
+    }
+    for (int r = 0; r < l->n_run; r++)
+        if (l->info[r] < 0) l->info[r] = 0;
+}
+
+/* Runs with mark `yes`, first those without `late`. */
+static int *list(const struct lattice_layout *l, const bool *yes, const bool *late, int *n, int *n_first)
+{
+    int *list = fail_alloc((size_t)l->n_run * sizeof *list);
+    *n = 0;
+    for (int pass = 0; pass < 2; pass++) {
+        for (int r = 0; r < l->n_run; r++)
+            if (yes[r] && late[r] == (pass == 1)) list[(*n)++] = r;
+        if (pass == 0) *n_first = *n;
+    }
+    return list;
+}
+
+static void list_runs(struct build *b)
+{
+    struct lattice_layout *l = b->l;
+    bool *owned = fail_alloc((size_t)l->n_run), *needed = fail_alloc((size_t)l->n_run), *late_p = fail_alloc((size_t)l->n_run),
+         *late_f = fail_alloc((size_t)l->n_run);
+    for (int pass = 0; pass < 2; pass++) /* p first: forces ask whether the p of their neighbours is late */
+        for (int64_t i = 0; i < b->cells->n; i++) {
+            int r = b->local[b->places->run_of[i]];
+            if (b->mark[i] != OWNED && b->mark[i] != FIRST_GHOST) continue;
+            owned[r] |= b->mark[i] == OWNED;
+            needed[r] |= b->depth == 2;
+            late_p[r] |= b->mark[i] != OWNED;
+            for (int f = 0; f < 6; f++) {
+                int64_t j = linked(b, i, f);
+                if (j < 0) continue;
+                late_p[r] |= pass == 0 && b->mark[j] != OWNED;
+                if (b->mark[i] != OWNED) continue;
+                late_f[r] |= b->mark[j] != OWNED || (b->depth == 2 && pass == 1 && late_p[b->local[b->places->run_of[j]]]);
+            }
+            late_f[r] |= b->depth == 2 && pass == 1 && late_p[r];
+        }
+    l->force = list(l, owned, late_f, &l->n_force, &l->n_force_interior);
+    l->volume = list(l, needed, late_p, &l->n_volume, &l->n_volume_interior);
+    free(owned);
+    free(needed);
+    free(late_p);
+    free(late_f);
+}
+
+static void add(int **list, int64_t *n, int index)
+{
+    if ((*n & (*n - 1)) == 0) *list = fail_realloc(*list, (size_t)(*n > 0 ? 2 * *n : 16) * sizeof **list);
+    (*list)[(*n)++] = index;
+}
+
+/* Marks with r the owned cells within `depth` links of the cell i. */
+static void stamp_around(const struct build *b, int *stamp, int64_t i, int r, int depth)
+{
+    for (int f = 0; f < 6; f++) {
+        int64_t j = linked(b, i, f);
+        if (j < 0) continue;
+        if (b->mark[j] == OWNED) stamp[j] = r;
+        if (depth > 1) stamp_around(b, stamp, j, r, depth - 1);
+    }
+}
+
+/* Links and layers are symmetric: a rank needs those of my cells that lie within `depth` links of what I have as a ghost from it. */
+static void list_ghosts(struct build *b)
+{
+    struct lattice_layout *l = b->l;
+    int *stamp = fail_alloc((size_t)b->cells->n * sizeof *stamp);
+    l->count_to = fail_alloc((size_t)b->n_rank * sizeof *l->count_to);
+    l->count_from = fail_alloc((size_t)b->n_rank * sizeof *l->count_from);
+    for (int64_t i = 0; i < b->cells->n; i++) {
+        stamp[i] = -1;
+        if (b->mark[i] > OWNED) l->count_from[b->owner[i]]++;
+    }
+    for (int r = 0; r < b->n_rank; r++) {
+        if (l->count_from[r] == 0) continue;
+        for (int64_t i = 0; i < b->cells->n; i++) {
+            if (b->mark[i] <= OWNED || b->owner[i] != r) continue;
+            add(&l->recv, &l->n_recv, index_of(b, i));
+            stamp_around(b, stamp, i, r, b->depth);
+        }
+        int64_t before = l->n_send;
+        for (int64_t k = 0; k < l->n_owned; k++)
+            if (stamp[l->gid[k]] == r) add(&l->send, &l->n_send, l->index[k]);
+        l->count_to[r] = l->n_send - before;
+    }
+    free(stamp);
+}
+
+struct lattice_layout *lattice_layout_create(const struct lattice_cells *cells, const int *owner, int rank, int n_rank, int run, int depth)
+{
+    struct lattice_layout *l = fail_alloc(sizeof *l);
+    struct build b = {.cells = cells, .owner = owner, .rank = rank, .n_rank = n_rank, .depth = depth, .l = l};
+    b.places = lattice_places_create(cells, run);
+    mark(&b);
+    number_runs(&b);
+    fill_words(&b);
+    fill_info(&b);
+    list_runs(&b);
+    list_ghosts(&b);
+    lattice_places_free(b.places);
+    free(b.mark);
+    free(b.local);
+    return l;
+}
+
+void lattice_layout_free(struct lattice_layout *l)
+{
+    if (!l) return;
+    void *all[] = {l->base, l->info, l->word, l->row, l->gid, l->index, l->force, l->volume, l->count_to, l->count_from, l->send, l->recv};
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) free(all[k]);
+    free(l);
+}

@@ -1,0 +1,177 @@
+/* The lattice behind step.h: cells from the scene, their rank's part on the device, steps. */
+#include "lattice_method.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fail.h"
+#include "lattice_frequency.h"
+#include "output.h"
+#include "report.h"
+#include "scene_report.h"
+
+/* What the scene language knows and this program does not do yet. */
+static void refuse(const struct scene *scene, struct scene_errors *errors)
+{
+    static const char *const field[] = {"stress", "von_mises", "broken"};
+    for (int k = 0; k < scene->output.n_field; k++)
+        for (int f = 0; f < 3; f++)
+            if (!strcmp(scene->output.field[k], field[f]))
+                scene_errors_add(errors, "%s: output.fields: %s of method lattice is not in this version", scene->path, field[f]);
+    for (int m = 0; m < scene->n_measure; m++)
+        if (scene->measure[m].kind != MEASURE_PROBE)
+            scene_errors_add(errors, "%s:%d: measure '%s': of method lattice this version has probe only", scene->path, scene->measure[m].line,
+                scene->measure[m].name);
+    for (int m = 0; m < scene->n_material; m++)
+        if (scene->material[m].has_strength)
+            scene_errors_add(errors, "%s: materials.%s.strength: links do not break in this version", scene->path, scene->material[m].name);
+    if (scene->lattice.relax) scene_errors_add(errors, "%s: lattice.relax is not in this version", scene->path);
+}
+
+static void read(struct sim *s)
+{
+    struct scene_errors errors = {NULL, 0};
+    s->solid = fail_alloc(sizeof *s->solid);
+    refuse(s->scene, &errors);
+    s->solid->cells = lattice_cells_create(s->scene, &errors);
+    scene_report_errors(s->comm, &errors);
+    s->n_first = s->solid->cells->n;
+}
+
+static void plan(struct sim *s)
+{
+    const struct scene_time *t = &s->scene->time;
+    s->features.real_is_float = s->scene->precision == PRECISION_SINGLE || s->scene->precision == PRECISION_MIXED;
+    s->features.position_is_float = s->scene->precision == PRECISION_SINGLE;
+    s->dt_limit = lattice_frequency_step(s->scene, s->solid->cells);
+    s->dt = t->step > 0 ? t->step : t->safety * s->dt_limit;
+    if (!(s->dt > 0) || isinf(s->dt))
+        fail_stop_together(EXIT_SCENE, "%s: time.step: auto finds no limit in this scene, for no two cells are linked; give a value", s->scene->path);
+    s->solid->input = lattice_input_create(s->scene, s->solid->cells, s->dt);
+}
+
+static void setup(struct sim *s)
+{
+    struct lattice_run *r = s->solid;
+    log_print(s->log, "%lld cells in %d %s", (long long)s->n_first, s->scene->n_body, s->scene->n_body == 1 ? "body" : "bodies");
+    r->lattice = lattice_create(s->dev, s->comm, r->cells, &r->input->options);
+}
+
+static void warn(struct sim *s)
+{
+    (void)s; /* what is not wise in a lattice scene, `check` says */
+}
+
+static void release(struct sim *s)
+{
+    if (!s->solid) return;
+    lattice_free(s->solid->lattice);
+    lattice_input_free(s->solid->input);
+    lattice_cells_free(s->solid->cells);
+    free(s->solid);
+}
+
+static bool stale(struct sim *s)
+{
+    (void)s;
+    return false;
+}
+
+/* Cells keep their neighbours and their rank. */
+static void regroup(struct sim *s)
+{
+    (void)s;
+}
+
+static void advance(struct sim *s, bool observe)
+{
+    lattice_advance(s->solid->lattice, observe);
+    if (watch_due(s->step)) watch_vote(&s->watch, s->comm, output_stop_wanted(s) ? WATCH_STOP : 0);
+}
+
+static void resume(struct sim *s)
+{
+    lattice_resume(s->solid->lattice);
+}
+
+static bool digest(struct sim *s, uint64_t *digest)
+{
+    return lattice_digest(s->solid->lattice, digest) == 0;
+}
+
+static void check_limit(struct sim *s)
+{
+    uint64_t unused;
+    s->limit_at = s->step;
+    if (s->dt > s->dt_limit && !s->scene->time.allow_unstable)
+        output_stop_numerics(
+            s, "the time step %.4g s is over its limit %.4g s; take a smaller time.step, or set time.allow_unstable", s->dt, s->dt_limit);
+    if (!digest(s, &unused))
+        output_stop_numerics(
+            s, "displacements or velocities are not numbers any more; the time step %.4g s is %.3g of its limit", s->dt, s->dt / s->dt_limit);
+}
+
+static int64_t number(const struct sim *s)
+{
+    return s->n_first;
+}
+
+/* Links whose lower cell this rank has. */
+static void count(const struct sim *s, int64_t *n_interaction, int64_t *halo_bytes)
+{
+    const struct lattice *l = s->solid->lattice;
+    *n_interaction = 0;
+    for (int64_t i = 0; i < l->layout->n_owned; i++)
+        for (int face = 1; face < 6; face += 2) *n_interaction += s->solid->cells->bits[l->layout->gid[i]] >> face & 1;
+    *halo_bytes = l->halo ? l->halo->halo->bytes_sent : 0;
+}
+
+static void report_features(const struct sim *s, struct report *r)
+{
+    const struct lattice_features *f = &s->solid->lattice->features;
+    for (int i = 0; lattice_features_name(i); i++) report_integer(r, lattice_features_name(i), lattice_features_value(f, i));
+}
+
+static void report_energy(struct sim *s, struct report *r, bool observed)
+{
+    (void)s;
+    (void)r;
+    (void)observed;
+}
+
+static void report_kernels(const struct sim *s, struct report *r)
+{
+    struct lattice *l = s->solid->lattice;
+    struct launch *all[] = {l->force, l->volume, l->first};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        if (!all[i]) continue;
+        report_begin(r, all[i]->name);
+        report_number(r, "seconds", launch_seconds(all[i]));
+        report_integer(r, "launches", all[i]->n_run);
+        report_end(r);
+    }
+}
+
+const struct step_ops lattice_ops = {
+    .name = "lattice",
+    .read = read,
+    .plan = plan,
+    .setup = setup,
+    .warn = warn,
+    .free = release,
+    .stale = stale,
+    .regroup = regroup,
+    .advance = advance,
+    .resume = resume,
+    .check_limit = check_limit,
+    .n_element = number,
+    .frame = lattice_method_frame,
+    .measure_columns = lattice_method_measure_columns,
+    .measure = lattice_method_measure,
+    .digest = digest,
+    .count = count,
+    .report_features = report_features,
+    .report_energy = report_energy,
+    .report_kernels = report_kernels,
+};

@@ -1,0 +1,220 @@
+#include "lattice_host.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "fail.h"
+#include "lattice_places.h"
+
+static real *reals(double *value, int64_t n)
+{
+    real *r = fail_alloc((size_t)n * sizeof *r);
+    for (int64_t i = 0; i < n; i++) r[i] = (real)value[i];
+    free(value);
+    return r;
+}
+
+struct host *host_create(const struct lattice_cells *cells, const struct lattice_options *options)
+{
+    struct host *h = fail_alloc(sizeof *h);
+    struct lattice_places *places = lattice_places_create(cells, 16);
+    size_t n = (size_t)cells->n;
+    int k = cells->n_kind;
+    h->cells = cells;
+    h->options = *options;
+    h->scheme = lattice_schemes_table(options->scheme);
+    h->n = cells->n;
+    h->neighbour = fail_alloc(n * sizeof *h->neighbour);
+    h->now = fail_alloc(n * sizeof *h->now);
+    h->next = fail_alloc(n * sizeof *h->next);
+    h->start = fail_alloc(n * sizeof *h->start);
+    h->sums = fail_alloc(n * sizeof *h->sums);
+    h->p = fail_alloc(n * sizeof *h->p);
+    h->link = reals(lattice_features_links(cells, options), (int64_t)k * k * LINK_WIDTH);
+    h->cell = reals(lattice_features_cells(cells, options), (int64_t)k * CELL_WIDTH);
+    if (!h->scheme->is_rk) h->kick = reals(lattice_features_kicks(cells, options), (int64_t)(h->scheme->n + 2) * k * KICK_WIDTH);
+    if (WITH_LOADS) {
+        h->rows = fail_alloc((size_t)options->n_row * LOAD_WIDTH * sizeof *h->rows);
+        h->rows_double = fail_alloc((size_t)options->n_row * LOAD_WIDTH * sizeof *h->rows_double);
+    }
+    for (int64_t i = 0; i < h->n; i++) {
+        h->now[i].q = quat_of(1, 0, 0, 0);
+        if (cells->v) h->now[i].v = v3((real)cells->v[i][0], (real)cells->v[i][1], (real)cells->v[i][2]);
+        if (cells->w) h->now[i].w = v3((real)cells->w[i][0], (real)cells->w[i][1], (real)cells->w[i][2]);
+        for (int f = 0; f < 6; f++) h->neighbour[i][f] = cells->bits[i] & CELL_LINK(f) ? lattice_places_neighbour(places, cells, i, f) : -1;
+    }
+    lattice_places_free(places);
+    return h;
+}
+
+void host_free(struct host *h)
+{
+    void *all[] = {h->neighbour, h->now, h->next, h->start, h->sums, h->p, h->link, h->cell, h->kick, h->rows, h->rows_double};
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) free(all[k]);
+    free(h);
+}
+
+static struct link_constants constants(const struct host *h, int64_t lower, int64_t higher)
+{
+    struct link_constants k;
+    const real *row = h->link + (h->cells->kind_of[lower] * h->cells->n_kind + h->cells->kind_of[higher]) * LINK_WIDTH;
+    LATTICE_CONSTANTS(k, row);
+    return k;
+}
+
+static void load_rows(struct host *h, double t, double from, double to)
+{
+    if (!WITH_LOADS) return;
+    h->options.rows_at(h->options.context, t, from, to, h->rows_double);
+    for (int i = 0; i < h->options.n_row * LOAD_WIDTH; i++) h->rows[i] = (real)h->rows_double[i];
+}
+
+static struct lattice_load load_of(const struct host *h, int64_t i)
+{
+    struct lattice_load load;
+    const real *row = h->rows + h->cells->row[i] * LOAD_WIDTH;
+    LATTICE_LOAD(load, row);
+    return load;
+}
+
+static void pressures(struct host *h)
+{
+    for (int64_t i = 0; i < h->n; i++) {
+        const real *cell = h->cell + h->cells->kind_of[i] * CELL_WIDTH;
+        real sum = 0;
+        for (int f = 0; f < 6; f++) {
+            int64_t j = h->neighbour[i][f];
+            if (j >= 0) sum += lattice_stretch(f, 1, h->now[i], h->now[j], f % 2 ? constants(h, i, j) : constants(h, j, i), cell[5]);
+            else sum += 0;
+        }
+        struct volume_constants c = {cell[2], cell[3], cell[4], cell[7]};
+        h->p[i] = c.lambda * volume_strain(sum, WITH_LOADS ? load_of(h, i).traction : (real)0, h->cells->bits[i] & 63, c);
+    }
+}
+
+struct pull {
+    vec3 a, b, given_v, given_w;
+};
+
+static struct pull pull_of(const struct host *h, int64_t i)
+{
+    struct link_share sum = {{0, 0, 0}, {0, 0, 0}};
+    struct pull r = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    const real *cell = h->cell + h->cells->kind_of[i] * CELL_WIDTH;
+    for (int f = 0; f < 6; f++) {
+        int64_t j = h->neighbour[i][f];
+        struct link_share share = {{0, 0, 0}, {0, 0, 0}};
+        if (j >= 0) share = lattice_link(f, 1, h->now[i], h->now[j], f % 2 ? constants(h, i, j) : constants(h, j, i), h->p[i], h->p[j]);
+        sum = lattice_add(sum, share);
+    }
+    vec3 add = v3((real)h->options.gravity[0], (real)h->options.gravity[1], (real)h->options.gravity[2]);
+    if (WITH_LOADS) {
+        struct lattice_load load = load_of(h, i);
+        sum = lattice_load_add(sum, h->now[i], load);
+        add = v3_add(add, load.acceleration);
+        r.given_v = load.v;
+        r.given_w = load.w;
+    }
+    r.a = WITH_LOADS || WITH_GRAVITY ? v3_fma(cell[0], sum.force, add) : v3_scale(cell[0], sum.force);
+    r.b = v3_scale(cell[1], sum.torque);
+    return r;
+}
+
+static void hold(const struct host *h, int64_t i, struct link_cell *c, vec3 v, vec3 w)
+{
+    c->v = lattice_hold(c->v, h->cells->bits[i], WORD_FIX, v);
+    c->w = lattice_hold(c->w, h->cells->bits[i], WORD_FIX + 3, w);
+}
+
+/* The kicks of row k, and a drift over `drift` s unless it is 0. */
+static void split(const struct host *h, int k, double drift, struct link_cell *to)
+{
+    for (int64_t i = 0; i < h->n; i++) {
+        const real *kick = h->kick + (k * h->cells->n_kind + h->cells->kind_of[i]) * KICK_WIDTH;
+        struct pull r = pull_of(h, i);
+        struct link_cell c = h->now[i];
+        for (int part = 0; part < 4; part += 2) {
+            c.v = lattice_kick(c.v, r.a, kick[part], kick[part + 1]);
+            c.w = lattice_kick(c.w, r.b, kick[part], kick[part + 1]);
+        }
+        hold(h, i, &c, r.given_v, r.given_w);
+        to[i] = fabs(drift) > 0 ? lattice_drift(c, (preal)drift) : c;
+    }
+}
+
+static void split_step(struct host *h)
+{
+    double dt = h->options.dt, at = h->scheme->first;
+    if (at > 0) {
+        double t = (double)h->step * dt;
+        load_rows(h, t, t, t + at * dt);
+        for (int64_t i = 0; i < h->n; i++) {
+            if (WITH_LOADS) hold(h, i, &h->now[i], load_of(h, i).v, load_of(h, i).w);
+            h->now[i] = lattice_drift(h->now[i], (preal)(at * dt));
+        }
+    }
+    for (int k = 0; k < h->scheme->n; k++) {
+        const struct lattice_op *op = &h->scheme->op[k];
+        double t = ((double)h->step + at) * dt;
+        load_rows(h, t, t, t + op->drift * dt);
+        if (WITH_VOLUME) pressures(h);
+        split(h, k == 0 && h->scheme->ends_with_kick && !h->started ? h->scheme->n + 1 : k, op->drift * dt, h->next);
+        memcpy(h->now, h->next, (size_t)h->n * sizeof *h->now);
+        at += op->drift;
+    }
+    h->started = true;
+}
+
+static struct lattice_stage stage_of(const struct host *h, int k)
+{
+    const struct lattice_rk *c = &h->scheme->rk[k];
+    double dt = h->options.dt, square = dt * dt;
+    return (struct lattice_stage){(preal)(c->sum_v * dt), (preal)(c->sum_a * square), (preal)(c->next_v * dt), (preal)(c->next_a * square),
+        (preal)(c->next_turn * dt), (preal)(c->sum_turn * dt), (real)(c->sum_k * dt), (real)(c->next_k * dt), k == 0, k == h->scheme->n - 1,
+        h->scheme->is_nystrom};
+}
+
+static void rk_step(struct host *h)
+{
+    memcpy(h->start, h->now, (size_t)h->n * sizeof *h->now);
+    for (int k = 0; k < h->scheme->n; k++) {
+        struct lattice_stage stage = stage_of(h, k);
+        double t = ((double)h->step + h->scheme->rk[k].at) * h->options.dt;
+        load_rows(h, t, t, t);
+        if (WITH_VOLUME) pressures(h);
+        for (int64_t i = 0; i < h->n; i++) {
+            const real alpha = h->cell[h->cells->kind_of[i] * CELL_WIDTH + 6];
+            struct pull r = pull_of(h, i);
+            struct link_cell c = h->now[i];
+            if (k == 0) h->sums[i] = lattice_sums_zero();
+            hold(h, i, &c, r.given_v, r.given_w);
+            if (WITH_MASS_DAMPING) {
+                r.a = v3_fma(-alpha, c.v, r.a);
+                r.b = v3_fma(-alpha, c.w, r.b);
+            }
+            r.a = lattice_hold(r.a, h->cells->bits[i], WORD_FIX, v3(0, 0, 0));
+            r.b = lattice_hold(r.b, h->cells->bits[i], WORD_FIX + 3, v3(0, 0, 0));
+            h->next[i] = lattice_stage_next(c, h->start[i], r.a, r.b, stage, &h->sums[i]);
+            hold(h, i, &h->next[i], r.given_v, r.given_w);
+        }
+        memcpy(h->now, h->next, (size_t)h->n * sizeof *h->now);
+    }
+}
+
+void host_step(struct host *h)
+{
+    if (h->scheme->is_rk) rk_step(h);
+    else split_step(h);
+    h->step++;
+}
+
+void host_observe(const struct host *h, struct link_cell *seen)
+{
+    memcpy(seen, h->now, (size_t)h->n * sizeof *seen);
+    if (!h->scheme->ends_with_kick) return;
+    struct host copy = *h;
+    double t = (double)h->step * h->options.dt;
+    load_rows(&copy, t, t, t);
+    if (WITH_VOLUME) pressures(&copy);
+    split(&copy, h->scheme->n, 0, seen);
+}

@@ -1,0 +1,30 @@
+/* The lattice on the host, from the laws that the kernels include: same flags, same order, one loop over all cells. */
+#ifndef LATTICE_HOST_H
+#define LATTICE_HOST_H
+
+#include "lattice_bodies.h"
+#include "lattice_state.h"
+
+struct host {
+    const struct lattice_cells *cells;
+    struct lattice_options options;
+    const struct lattice_table *scheme;
+    int64_t n;
+    int64_t (*neighbour)[6];
+    struct link_cell *now, *next, *start; /* [n] */
+    struct lattice_sums *sums;            /* [n] */
+    real *p;                              /* [n] lambda Th */
+    real *link, *cell, *kick, *rows;      /* tables */
+    double *rows_double;
+    int64_t step;
+    bool started;
+};
+
+struct host *host_create(const struct lattice_cells *cells, const struct lattice_options *options);
+void host_free(struct host *h);
+/* As lattice_advance and lattice_resume, but for an observed step of a scheme that ends with a kick: `seen` [n] gets the state, what goes on
+ * stays. */
+void host_step(struct host *h);
+void host_observe(const struct host *h, struct link_cell *seen);
+
+#endif

@@ -1,0 +1,84 @@
+/* The same bits on any number of ranks as on one: each rank runs the whole body alone, then its part of it, and compares digests. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "fail.h"
+#include "lattice_bodies.h"
+#include "tests/mpi_check.h"
+
+static void rows_at(void *context, double t, double from, double to, double *rows)
+{
+    (void)context;
+    for (int r = 1; r < 5; r++)
+        for (int k = 0; k < LOAD_WIDTH; k++)
+            rows[r * LOAD_WIDTH + k] = (k < LOAD_VELOCITY ? 50 : 3) * sin(r + k + 3e3 * (k < LOAD_VELOCITY ? t : from + to));
+}
+
+static struct device *dev;
+static struct comm *comm, alone;
+
+static uint64_t digest(const struct comm *who, const struct lattice_cells *cells, const struct lattice_options *o, int n_step, bool observe)
+{
+    struct lattice *l = lattice_create(dev, who, cells, o);
+    uint64_t value = 0;
+    int64_t n_nan;
+    lattice_resume(l);
+    for (int step = 1; step <= n_step; step++) {
+        bool look = step == n_step || (observe && step % 3 == 0);
+        lattice_advance(l, look);
+        if (look && step < n_step) lattice_resume(l);
+    }
+    n_nan = lattice_digest(l, &value);
+    CHECK(n_nan == 0);
+    if (who->n_rank > 1 && cells->n > 200) {
+        int64_t sent = l->halo->halo->bytes_sent;
+        comm_sum_i64(who, &sent, 1);
+        CHECK(sent > 0);
+    }
+    lattice_free(l);
+    return value;
+}
+
+static void check(const int size[3], bodies_solid *solid, int n_grid, int n_material, struct lattice_options o)
+{
+    struct link_material material[2] = {{1000, 2e7, 0.3, 0}, {700, 1e7, 0.1, 0}};
+    const double alpha[2] = {20, 50};
+    bool damped = o.scheme == LATTICE_LEAPFROG || o.scheme == LATTICE_RK4;
+    material[0].damping = damped && n_material > 1 ? 2e-5 : 0;
+    if (n_material == 1) material[0].poisson = 0;
+    o.dt = 1e-4;
+    o.material = material;
+    o.n_material = n_material;
+    o.alpha = damped && n_material > 1 ? alpha : NULL;
+    o.n_row = n_material > 1 ? 5 : 1;
+    o.rows_at = rows_at;
+    o.gravity[2] = -9.81;
+    struct lattice_cells *cells = bodies_create(n_grid, size, 0.1, n_material, solid);
+    if (n_material == 1)
+        for (int64_t i = 0; i < cells->n; i++) cells->row[i] = 0;
+    bodies_shake(cells, 5, 100);
+    uint64_t one = digest(&alone, cells, &o, 10, false), all = digest(comm, cells, &o, 10, false), looked = digest(comm, cells, &o, 10, true);
+    CHECK(one == all);
+    CHECK(one == looked);
+    o.dt = 1.0001e-4;
+    CHECK(digest(comm, cells, &o, 10, false) != one); /* the digest sees what happens */
+    bodies_free(cells);
+}
+
+int main(int argc, char **argv)
+{
+    const int size[3] = {41, 9, 7}, thin[3] = {70, 1, 1}, tiny[3] = {2, 1, 1};
+    const enum lattice_scheme scheme[5] = {LATTICE_LEAPFROG, LATTICE_RK4, LATTICE_RKN4, LATTICE_PEFRL, LATTICE_VEFRL};
+    comm = comm_create(&argc, &argv);
+    alone = (struct comm){.world = MPI_COMM_SELF, .node = MPI_COMM_SELF, .n_rank = 1, .n_node_rank = 1};
+    dev = device_open(comm, NULL, true, false);
+    check(size, bodies_block, 1, 1, (struct lattice_options){0});
+    check(thin, bodies_block, 1, 1, (struct lattice_options){.turn = true});
+    check(tiny, bodies_block, 1, 1, (struct lattice_options){0});
+    for (int k = 0; k < 5; k++) check(size, bodies_mixed, 2, 2, (struct lattice_options){.turn = true, .scheme = scheme[k]});
+    check(size, bodies_mixed, 2, 2, (struct lattice_options){.real_is_float = true});
+    check(size, bodies_voxels, 1, 2, (struct lattice_options){.turn = true, .real_is_float = true, .position_is_float = true});
+    device_free(dev);
+    comm_free(comm);
+    return 0;
+}

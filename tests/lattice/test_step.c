@@ -1,0 +1,162 @@
+/* Steps of each scheme on the device against the same laws on the host, bit for bit, with one work-item per run and with one per cell; observed steps
+ * change nothing. Compiled once for each set of features and each precision, see meson.build. */
+#include "tests/limit/limit_test.h"
+
+#include <string.h>
+
+#include "fail.h"
+#include "lattice_host.h"
+
+static struct comm *comm;
+static const double dt = 1e-4, gravity[3] = {0.5, -1, -9.81};
+
+static void rows_at(void *context, double t, double from, double to, double *rows)
+{
+    (void)context;
+    for (int r = 1; r < 5; r++)
+        for (int k = 0; k < LOAD_WIDTH; k++) {
+            double size = k < LOAD_BODY ? 100 : k < LOAD_ACCELERATION ? 1000 : k < LOAD_VELOCITY + 3 ? 10 : 30;
+            rows[r * LOAD_WIDTH + k] = size * (k < LOAD_VELOCITY ? sin(r + k + 3e3 * t) : cos(r * k + 2e3 * (from + to)));
+        }
+}
+
+/* Cells and options that need just the features this test was compiled with. */
+static struct lattice_cells *make(struct lattice_options *o, struct link_material material[2], double alpha[2])
+{
+    const int size[3] = {37, 7, 5};
+    int n_material = WITH_KINDS ? 2 : 1;
+    material[0] = (struct link_material){1000, 2e7, WITH_VOLUME ? 0.3 : 0, WITH_LINK_DAMPING ? 2e-5 : 0};
+    material[1] = (struct link_material){700, 1e7, WITH_SHEAR_APART ? 0.1 : WITH_VOLUME ? 0.3 : 0, 0};
+    alpha[0] = 20;
+    alpha[1] = 50;
+    o->dt = dt;
+    o->turn = WITH_TURN;
+    o->real_is_float = REAL_IS_FLOAT;
+    o->position_is_float = POSITION_IS_FLOAT;
+    o->material = material;
+    o->n_material = n_material;
+    o->alpha = WITH_MASS_DAMPING ? alpha : NULL;
+    o->n_row = WITH_LOADS ? 5 : 1;
+    o->rows_at = rows_at;
+    for (int a = 0; a < 3; a++) o->gravity[a] = WITH_GRAVITY ? gravity[a] : 0;
+    struct lattice_cells *c = bodies_create(WITH_KINDS ? 2 : 1, size, 0.1, n_material, bodies_mixed);
+    for (int64_t i = 0; i < c->n; i++) {
+        if (!WITH_FIX) c->bits[i] &= 63;
+        if (!WITH_LOADS) c->row[i] = 0;
+    }
+    bodies_shake(c, 5, 100);
+    return c;
+}
+
+static void check_features(const struct lattice_features *f)
+{
+    assert_true(f->turn == WITH_TURN && f->volume == WITH_VOLUME && f->shear_apart == WITH_SHEAR_APART && f->twist_apart == WITH_TWIST_APART);
+    assert_true(f->link_damping == WITH_LINK_DAMPING && f->mass_damping == WITH_MASS_DAMPING && f->fix == WITH_FIX && f->loads == WITH_LOADS);
+    assert_true(f->gravity == WITH_GRAVITY && f->kinds == WITH_KINDS && f->rk == WITH_RK);
+}
+
+static void same(const char *what, int64_t i, const double *device, double x, double y, double z)
+{
+    const double host[3] = {x, y, z};
+    for (int a = 0; a < 3; a++)
+        if (memcmp(&device[a], &host[a], sizeof(double)))
+            fail_msg("%s[%d] of cell %lld: device %a, host %a", what, a, (long long)i, device[a], host[a]);
+}
+
+static void compare(const struct lattice *l, const struct link_cell *host)
+{
+    size_t n = (size_t)l->n_global;
+    struct lattice_motion m = {fail_alloc(n * sizeof *m.u), fail_alloc(n * sizeof *m.theta), fail_alloc(n * sizeof *m.q), fail_alloc(n * sizeof *m.v),
+        fail_alloc(n * sizeof *m.w)};
+    lattice_read(l, &m);
+    assert_int_equal(l->layout->n_owned, l->n_global);
+    for (int64_t i = 0; i < l->n_global; i++) {
+        const struct link_cell *c = &host[i];
+        double qw = (double)c->q.w;
+        same("u", i, m.u[i], (double)c->u.x, (double)c->u.y, (double)c->u.z);
+        same("v", i, m.v[i], (double)c->v.x, (double)c->v.y, (double)c->v.z);
+        same("w", i, m.w[i], (double)c->w.x, (double)c->w.y, (double)c->w.z);
+        if (WITH_TURN) same("q", i, m.q[i] + 1, (double)c->q.v.x, (double)c->q.v.y, (double)c->q.v.z);
+        if (WITH_TURN) assert_memory_equal(&m.q[i][0], &qw, sizeof qw);
+        if (!WITH_TURN) same("theta", i, m.theta[i], (double)c->theta.x, (double)c->theta.y, (double)c->theta.z);
+    }
+    free(m.u);
+    free(m.theta);
+    free(m.q);
+    free(m.v);
+    free(m.w);
+}
+
+/* Observed at steps 0, 3 and 7. */
+static void run(enum lattice_scheme scheme, bool one_lane, int run_length)
+{
+    struct link_material material[2];
+    double alpha[2];
+    struct lattice_options o = {.scheme = scheme, .run = run_length};
+    struct lattice_cells *cells = make(&o, material, alpha);
+    struct device *dev = device_open(comm, NULL, false, false);
+    if ((!POSITION_IS_FLOAT && !dev->fp64) || (REAL_IS_FLOAT && !dev->fp32_correct_divide)) exit(77);
+    dev->one_lane = one_lane;
+    struct lattice *l = lattice_create(dev, comm, cells, &o);
+    struct host *h = host_create(cells, &o);
+    struct link_cell *seen = fail_alloc((size_t)cells->n * sizeof *seen);
+    check_features(&l->features);
+    bool observed = true;
+    compare(l, h->now);
+    for (int step = 1; step <= 7; step++) {
+        if (observed) lattice_resume(l);
+        observed = step == 3 || step == 7;
+        lattice_advance(l, observed);
+        host_step(h);
+        if (!observed) continue;
+        host_observe(h, seen);
+        compare(l, seen);
+    }
+    free(seen);
+    host_free(h);
+    lattice_free(l);
+    device_free(dev);
+    bodies_free(cells);
+}
+
+static void leapfrog(void **state)
+{
+    (void)state;
+    for (int one_lane = 0; one_lane < 2; one_lane++)
+        for (int length = 16; length <= 64; length *= 2) run(LATTICE_LEAPFROG, one_lane, length);
+}
+static void pefrl(void **state)
+{
+    (void)state;
+    run(LATTICE_PEFRL, true, 16);
+    run(LATTICE_PEFRL, false, 32);
+}
+static void vefrl(void **state)
+{
+    (void)state;
+    run(LATTICE_VEFRL, true, 16);
+}
+static void rk4(void **state)
+{
+    (void)state;
+    run(LATTICE_RK4, true, 32);
+    run(LATTICE_RK4, false, 16);
+}
+static void rkn4(void **state)
+{
+    (void)state;
+    run(LATTICE_RKN4, true, 16);
+}
+
+int main(void)
+{
+    const struct CMUnitTest split[] = {cmocka_unit_test(leapfrog), cmocka_unit_test(pefrl), cmocka_unit_test(vefrl)};
+    const struct CMUnitTest rk[] = {cmocka_unit_test(rk4), cmocka_unit_test(rkn4)};
+    (void)split;
+    (void)rk;
+    (void)leapfrog;
+    comm = comm_create(NULL, NULL);
+    int failed = WITH_RK ? cmocka_run_group_tests(rk, NULL, NULL) : cmocka_run_group_tests(split, NULL, NULL);
+    comm_free(comm);
+    return failed;
+}

@@ -1,0 +1,119 @@
+#!/usr/bin/python3
+"""The lattice through the program: the same bits on any number of ranks, closed forms, what is refused. Own arguments: names of tests."""
+import csv
+import math
+import os
+
+import numpy
+import yaml
+
+import parallel_runs
+from parallel_runs import frames
+
+STEEL = {"density": 7900, "young": 210e9, "poisson": 0.28}
+
+
+def plate(steps, **time):
+    """The seed's plate, coarse: held along a part of one edge, a force at a corner, damped."""
+    return {"title": "plate", "method": "lattice", "time": {"end": 1, "scheme": "rk4", **time},
+            "materials": {"steel": {**STEEL, "damping": {"mass": 120}}},
+            "bodies": [{"name": "plate", "material": "steel", "cell": 0.02, "shape": {"box": {"min": [0, 0, 0], "max": [0.8, 0.6, 0.04]}}}],
+            "boundaries": [{"where": {"box": {"min": [0.77, 0.2, -1], "max": [0.81, 0.5, 1]}}, "fix": ["x", "y", "z", "rx", "ry", "rz"]},
+                           {"where": {"box": {"min": [-1, -1, -1], "max": [0.05, 0.05, 1]}}, "force": [0, 0, -1000], "history": {"ramp": 1e-5}}],
+            "measure": [{"name": "corner", "every": 1e-5, "probe": {"at": [0, 0, 0.02]}}], "output": {"every": 0}}
+
+
+def block(scheme):
+    """Two materials with a hole, spinning and flying, links that are damped by little."""
+    soft = {"density": 1200, "young": 3e9, "poisson": 0.4}
+    return {"title": "block", "method": "lattice", "time": {"end": 1, "scheme": scheme}, "materials": {"steel": STEEL, "soft": soft},
+            "bodies": [{"name": "left", "material": "steel", "cell": 0.01, "shape": {"box": {"min": [0, 0, 0], "max": [0.2, 0.07, 0.05]}},
+                        "minus": [{"cylinder": {"from": [0.1, 0.035, -1], "to": [0.1, 0.035, 1], "radius": 0.02}}],
+                        "velocity": [3, -2, 1], "angular_velocity": [200, 100, -300]},
+                       {"name": "right", "material": "soft", "cell": 0.01, "shape": {"box": {"min": [0.2, 0, 0], "max": [0.33, 0.05, 0.03]}},
+                        "velocity": [3, -2, 1], "angular_velocity": [200, 100, -300]}],
+            "measure": [{"name": "end", "every": 2e-6, "probe": {"at": [0.33, 0, 0]}}], "output": {"every": 0}}
+
+
+class Lattice(parallel_runs.Case):
+    def put(self, scene):
+        path = os.path.join(self.dir, "scene.yaml")
+        with open(path, "w") as file:
+            yaml.safe_dump(scene, file)
+        return path
+
+    def rows(self, run, name):
+        with open(os.path.join(run.dir, name + ".csv")) as file:
+            return [[float(v) for v in row] for row in list(csv.reader(file))[1:]]
+
+    def test_ranks(self):
+        for name, scene in (("plate", plate(40)), ("leapfrog", block("leapfrog")), ("pefrl", block("pefrl"))):
+            all_ranks = (1, 3) if name == "pefrl" else (1, 2, 3, 4, 8)
+            for precision, ranks in (("double", all_ranks), ("single", (1, 3))):
+                alone = None
+                for n in ranks:
+                    with self.subTest(scene=name, precision=precision, ranks=n):
+                        run = self.good_run(self.put(scene), n, "--precision", precision, "--steps", "60")
+                        record = run.record()
+                        found = [record[key] for key in ("digest", "steps", "dt", "elements", "interactions")], run.series()
+                        alone = alone or found
+                        self.assertEqual(found, alone)
+                        self.assertEqual(record["plain_steps"]["allocations"], 0)
+                        self.assertTrue(n == 1 or record["halo_bytes_per_step"] > 0)
+
+    def test_free_chain_rings(self):
+        """A row of cells between two ends that start with opposite velocities: mode k = 1 of the free chain, w = 2 sqrt(kn/m) sin(pi/(2 N)), whose
+        velocities at the start, cos(pi (i + 1/2)/N), are given cell by cell. With z = w dt the phase is off by z^2/24 (leapfrog), z^4/120 (rk4) of
+        itself: 5.2e-4, 1.0e-7 after two periods of 200 steps; pefrl by less."""
+        n, h, young, density = 8, 0.01, 2e9, 1000
+        stiffness, mass = young * h, density * h**3
+        w = 2 * math.sqrt(stiffness / mass) * math.sin(math.pi / (2 * n))
+        bodies = [{"name": f"c{i}", "material": "m", "cell": h, "shape": {"box": {"min": [i * h, 0, 0], "max": [(i + 1) * h, h, h]}},
+                   "velocity": [0.1 * math.cos(math.pi * (i + 0.5) / n), 0, 0]} for i in range(n)]
+        period = 2 * math.pi / w
+        for scheme, least in (("leapfrog", 5.3e-4), ("rk4", 1.2e-7), ("pefrl", 2e-9)):
+            scene = {"title": "chain", "method": "lattice", "time": {"end": 2 * period, "step": period / 200, "scheme": scheme},
+                     "materials": {"m": {"density": density, "young": young, "poisson": 0}}, "bodies": bodies,
+                     "measure": [{"name": "end", "every": period / 200, "probe": {"at": [0, 0, 0]}}], "output": {"every": 0}}
+            run = self.good_run(self.put(scene), 1)
+            amplitude = 0.1 * math.cos(math.pi * 0.5 / n) / w
+            rows = self.rows(run, "end")
+            worst = max(abs(row[4] - amplitude * math.sin(w * row[0])) for row in rows) / amplitude
+            self.assertGreater(len(rows), 390)
+            self.assertLess(worst, least, scheme)
+
+    def test_free_flight_and_spin(self):
+        """A stiff cube that flies and turns keeps its velocity and axis; frames show hexahedra of the right size, wherever it has turned to."""
+        spin = numpy.array([300.0, -200.0, 100.0])
+        scene = {"title": "flight", "method": "lattice", "time": {"end": 5e-3, "scheme": "leapfrog"}, "materials": {"steel": STEEL},
+                 "bodies": [{"name": "b", "material": "steel", "cell": 0.01, "shape": {"box": {"min": [0, 0, 0], "max": [0.02, 0.02, 0.02]}},
+                             "velocity": [1, 2, 3], "angular_velocity": [float(v) for v in spin]}], "output": {"every": 0}}
+        run = self.good_run(self.put(scene), 2)
+        first, last = (frames.Frame(path) for path in (run.frames()[0], run.frames()[-1]))
+        t = last.time
+        self.assertEqual(first.corners.shape, (8, 8, 3))
+        self.assertLess(numpy.abs((last.points - first.points).mean(axis=0) - t * numpy.array([1, 2, 3])).max(), 1e-6)
+        edges = (last.corners + last.displacement)[:, 1] - (last.corners + last.displacement)[:, 0]
+        lengths = numpy.linalg.norm(edges, axis=1)
+        self.assertLess(abs(lengths / 0.01 - 1).max(), 2e-3)
+        turned = math.acos(numpy.clip(edges[0] @ [1, 0, 0] / lengths[0], -1, 1))
+        angle, axis = numpy.linalg.norm(spin) * t, spin / numpy.linalg.norm(spin)
+        expected = math.acos(math.cos(angle) + (1 - math.cos(angle)) * axis[0]**2)
+        self.assertLess(abs(turned - expected), 5e-3)
+        self.assertEqual(sorted(last.field("id").tolist()), list(range(8)))
+
+    def test_refused(self):
+        """A step over the limit ends the run with exit code 5 at once; what this version does not do is named."""
+        over = plate(1, step=1e-5)
+        run = self.run_scene(self.put(over), 2)
+        self.assertEqual(run.code, 5)
+        self.assertIn("over its limit", run.err)
+        over["time"]["allow_unstable"] = True
+        run = self.run_scene(self.put(over), 1, "--steps", "2000")
+        self.assertEqual(run.code, 5, run.err)
+        self.assertIn("not numbers any more", run.err)
+        self.assertIn("of its limit", run.err)
+
+
+if __name__ == "__main__":
+    parallel_runs.main(0)
