@@ -8,8 +8,8 @@ import cli
 import parallel_runs
 import robust_jobs
 
-# Where nobody looks for leaks: while pocl compiles, for a sanitizer that notes who allocates takes a minute for each kernel; and on several ranks, where
-# LeakSanitizer now and then crashes because it stops threads, of MPI and pocl, that are ending (mpirun.py can repeat a run, but not a request to stop).
+# Where nobody looks for leaks: while pocl compiles, for a sanitizer that notes who allocates takes a minute for each kernel; and on several ranks,
+# where LeakSanitizer now and then crashes because it stops threads, of MPI and pocl, that are ending.
 NO_LEAKS = {"ASAN_OPTIONS": "detect_leaks=0"}
 
 
