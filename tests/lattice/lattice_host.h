@@ -3,7 +3,7 @@
 #define LATTICE_HOST_H
 
 #include "lattice_bodies.h"
-#include "lattice_state.h"
+#include "lattice_through.h"
 
 struct host {
     const struct lattice_cells *cells;
@@ -25,5 +25,7 @@ void host_free(struct host *h);
 /* As lattice_advance and lattice_resume, but for an observed step of a scheme that ends with a kick: `seen` [n] gets the state, what goes on stays. */
 void host_step(struct host *h);
 void host_observe(const struct host *h, struct link_cell *seen);
+/* Stress of all cells [n] in the state `seen` of this step. */
+void host_stress(const struct host *h, struct link_cell *seen, bool extrapolate, struct stress *stress, real *von_mises);
 
 #endif
