@@ -1,4 +1,5 @@
-/* Stress of each owned cell from the forces of its links and loads: those that move it, evaluated once more (lattice_through.h). Runs as link_force.cl.
+/* Stress of each owned cell from the forces of its links and loads: those that move it, evaluated once more (lattice_through.h). Runs as
+ * link_force.cl.
  *
  * lint: WITH_SHEAR_APART requires WITH_VOLUME */
 #include "lattice_through.h"

@@ -18,8 +18,8 @@ void lattice_observed_bind(const struct lattice *l, struct launch *launch)
     launch_set_long(launch, "v_in", v_at(l));
 }
 
-/* After a step that ends with drifts, or whose velocities were kicked, ghosts are still those of its last evaluation. Each evaluation fetches its own,
- * so these may be overwritten; so may pressures and rows of loads. */
+/* After a step that ends with drifts, or whose velocities were kicked, ghosts are still those of its last evaluation. Each evaluation fetches its
+ * own, so these may be overwritten; so may pressures and rows of loads. */
 void lattice_observed_refresh(struct lattice *l, bool with_pressure)
 {
     double t = (double)l->step * l->options.dt;
