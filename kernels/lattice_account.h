@@ -1,7 +1,7 @@
 /* A lattice cell's share in the quantities that are conserved. Host and device alike; double sums (sums.h), whatever `real` is.
  *
- * Elastic: half of each of its links, and its own volumetric energy with the halves beyond which there is no link (law_volume.h); what dashpots add to
- * the pressure is not in it. Gravity's potential is 0 where cells begin. */
+ * Elastic: half of each of its links, and its own volumetric energy with the halves beyond which there is no link (law_volume.h); what dashpots add
+ * to the pressure is not in it. Gravity's potential is 0 where cells begin. */
 #ifndef DEMOCLES_LATTICE_ACCOUNT_H
 #define DEMOCLES_LATTICE_ACCOUNT_H
 

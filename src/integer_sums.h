@@ -1,4 +1,4 @@
-/* Sums of kernels/sums.h on the host: what a kernel's groups have added up, over all ranks, as doubles with the same bits however many ranks there are. */
+/* Sums of kernels/sums.h on the host: what a kernel's groups have added up, over all ranks, as doubles with the same bits however many there are. */
 #ifndef DEMOCLES_INTEGER_SUMS_H
 #define DEMOCLES_INTEGER_SUMS_H
 

@@ -14,8 +14,8 @@ struct lattice_account {
     struct buffer place, partial;
 };
 
-/* Where the centre of each run's first cell is, there or not, and the edge of its cells: [n_run][4] [m]. From the grid alone, so the same on any rank;
- * runs without own cells stay 0. The caller frees. */
+/* Where the centre of each run's first cell is, there or not, and the edge of its cells: [n_run][4] [m]. From the grid alone, so the same on any
+ * rank; runs without own cells stay 0. The caller frees. */
 static double *places(const struct lattice *l, const struct lattice_cells *cells)
 {
     const struct lattice_layout *c = l->layout;

@@ -1,5 +1,5 @@
-/* Energies and momenta of a lattice in its observed state (lattice.h), over all ranks, with the same bits on any number of them. Needs double precision
- * on the device. */
+/* Energies and momenta of a lattice in its observed state (lattice.h), over all ranks, with the same bits on any number of them. Needs double
+ * precision on the device. */
 #ifndef DEMOCLES_LATTICE_ENERGY_H
 #define DEMOCLES_LATTICE_ENERGY_H
 

@@ -48,7 +48,7 @@ static void one_cell(void **state)
     bodies_free(cells);
 }
 
-/* A strained block: (C11 e^2/2) V without lateral strain, all links of the block counted once: (n - 1)/n of each row, and its end cells' Th is half. */
+/* A block stretched along x, nothing moved sideways: every link along x has kn (e h)^2/2, once, and Th of the cells at the ends is half. */
 static void strained(void **state)
 {
     const struct link_material m = {1000, 2e7, 0.3, 0};

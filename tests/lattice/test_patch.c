@@ -1,5 +1,5 @@
-/* A body in a constant state of stress, held in balance by tractions on its exposed faces: every cell writes just that stress, shear too, in both forms,
- * before and after steps, in any attitude; so does a body under pressure. Strain as in tests/link/test_patch.c. */
+/* A body in a constant state of stress, held in balance by tractions on its exposed faces: every cell writes just that stress, shear too, in both
+ * forms, before and after steps, in any attitude; so does a body under pressure. Strain as in tests/link/test_patch.c. */
 #include "tests/limit/limit_test.h"
 
 #include <string.h>
