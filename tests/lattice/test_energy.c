@@ -126,9 +126,81 @@ static void kept(void **state)
     }
 }
 
+enum { N_BAR = 6 };
+static const double pull = 1e4; /* [Pa] */
+
+static void bar_rows(void *context, double t, double from, double to, double *rows)
+{
+    const double h = *(const double *)context;
+    (void)t;
+    (void)from;
+    (void)to;
+    memset(rows, 0, 3 * LOAD_WIDTH * sizeof *rows);
+    for (int f = 0; f < 2; f++) {
+        double *row = rows + (1 + f) * LOAD_WIDTH;
+        row[LOAD_FORCE] = (f ? 1 : -1) * pull * h * h;
+        row[LOAD_LEVER] = 0.5 * h * pull * h * h;
+        row[LOAD_TRACTION] = row[LOAD_NORMAL + f] = pull;
+    }
+}
+
+/* What the tractions have done on a bar: force times the way of the faces, (h/2) eps beyond the centres, eps = (t - lambda Th)/(2 G) [J]. */
+static double work_on_bar(const struct lattice *l, const struct link_material *m, double h)
+{
+    double u[N_BAR][3], G = link_constants_shear(*m), lambda = link_constants_lambda(LINK_ISOTROPIC, *m), way = 0;
+    lattice_read(l, &(struct lattice_motion){.u = u});
+    for (int end = 0; end < 2; end++) {
+        double stretch = end ? u[N_BAR - 1][0] - u[N_BAR - 2][0] : u[1][0] - u[0][0];
+        double strain = (stretch / (2 * h) + pull / (4 * G)) / (1 + 5 * lambda / (4 * G));
+        way += (end ? u[N_BAR - 1][0] : -u[0][0]) + 0.5 * h * (pull - lambda * strain) / (2 * G);
+    }
+    return pull * h * h * way;
+}
+
+/* A free bar that is pulled at both ends from time 0 on: largest change of energy less work, over the largest work. */
+static double unbalanced(double dt)
+{
+    const struct link_material m = {1000, 2e7, 0.3, 0};
+    const int size[3] = {N_BAR, 1, 1};
+    double h = 0.1, worst = 0, most = 0;
+    struct lattice_cells *cells = bodies_create(1, size, h, 1, bodies_block);
+    struct lattice_options o = {.dt = dt, .material = &m, .n_material = 1, .n_row = 3, .rows_at = bar_rows, .context = &h};
+    struct lattice_energy now;
+    cells->row[0] = 1;
+    cells->row[N_BAR - 1] = 2;
+    struct lattice *l = lattice_create(dev, comm, cells, &o);
+    struct lattice_account *account = lattice_energy_create(l, cells);
+    lattice_energy_now(account, &now);
+    double start = now.elastic - work_on_bar(l, &m, h), first = work_on_bar(l, &m, h);
+    lattice_resume(l);
+    for (int step = 1; step <= (int)lround(8e-3 / dt); step++) {
+        bool observe = step % (int)lround(4e-4 / dt) == 0;
+        lattice_advance(l, observe);
+        if (!observe) continue;
+        lattice_energy_now(account, &now);
+        double work = work_on_bar(l, &m, h);
+        lattice_resume(l);
+        most = fmax(most, work - first);
+        worst = fmax(worst, fabs(now.kinetic + now.rotational + now.elastic - work - start));
+    }
+    lattice_energy_free(account);
+    lattice_free(l);
+    bodies_free(cells);
+    return worst / most;
+}
+
+static void loaded(void **state)
+{
+    (void)state;
+    double coarse = unbalanced(1e-4), fine = unbalanced(5e-5), order = log2(coarse / fine);
+    printf("pulled bar: energy less work %.3g and %.3g of the work, order %.2f\n", coarse, fine, order);
+    assert_near(order, 2, 0.2);
+    assert_below(fine, 1e-2);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(one_cell), cmocka_unit_test(strained), cmocka_unit_test(kept)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(one_cell), cmocka_unit_test(strained), cmocka_unit_test(kept), cmocka_unit_test(loaded)};
     comm = comm_create(NULL, NULL);
     dev = device_open(comm, NULL, true, false);
     if (!dev->fp64) return 77;
