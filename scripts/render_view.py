@@ -62,7 +62,7 @@ def faces_of(n):
 class View:
     """draw() gives [height][width][3] bytes. `sharpness` times as many pixels are drawn and averaged. warp: factor on a solid's displacements."""
 
-    def __init__(self, panel, sharpness, axes, box, pixels_per_metre, walls, colours, warp):
+    def __init__(self, panel, sharpness, axes, box, pixels_per_metre, walls, colours, warp=1.0):
         self.panel, self.sharpness, self.warp = panel, sharpness, warp
         self.renderer, self.window = vtkRenderer(), vtkRenderWindow()
         self.renderer.SetBackground(1, 1, 1)

@@ -78,6 +78,8 @@ class Walls(unittest.TestCase):
 class Made:
     """A frame out of nothing."""
 
+    corners = None  # no solid
+
     def __init__(self, points, radius, time=0.0):
         self.points, self.radius, self.time = numpy.array(points, float), numpy.array(radius, float), time
 
