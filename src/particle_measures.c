@@ -108,8 +108,8 @@ static void measure_energy(struct sim *s, enum measure_kind kind, const struct e
     memcpy(value, all, sizeof all);
 }
 
-/* Energy from nowhere: the budget is off by more than ten times of what was there at the start and has come in since. (Coarse steps, still stable, may
- * be off by about once while a contact lasts.) The same on every rank. */
+/* Energy from nowhere: the budget is off by more than ten times of what was there at the start and has come in since. (Coarse steps, still stable,
+ * may be off by about once while a contact lasts.) The same on every rank. */
 static void check_energy(struct sim *s, const struct energy_sums *e)
 {
     const struct energy_sums *start = &s->energy_start;
