@@ -9,15 +9,20 @@ import unittest
 DEMOCLES, MPIRUN, MPIRUN_ARGS = None, None, []
 
 
+def own_lines(err):
+    """What is not a notice of mpirun, which stands between lines of dashes."""
+    lines, notice = [], False
+    for line in err.splitlines():
+        if line == 74 * "-":
+            notice = not notice
+        elif line and not notice:
+            lines.append(line)
+    return lines
+
+
 class Result:
     def __init__(self, run):
-        self.code, self.out, self.err = run.returncode, run.stdout, []
-        notice = False  # of mpirun: between lines of dashes
-        for line in run.stderr.splitlines():
-            if line == 74 * "-":
-                notice = not notice
-            elif line and not notice:
-                self.err.append(line)
+        self.code, self.out, self.err = run.returncode, run.stdout, own_lines(run.stderr)
 
 
 def launch(parts, cwd=None, env=None, stdout=subprocess.PIPE):
