@@ -11,7 +11,7 @@ import parallel_runs
 
 HANG = 1100  # [s]; a thousand times slower than a processor
 # Its compiler's optimiser makes instructions that it does not know (llvm.usub.sat, shuffles with undefined lanes), and so does forced inlining.
-OPTIONS = ["--data-races", "--uninitialized", "--check-api", "--num-threads", "1", "--build-options", "-cl-opt-disable -Dalways_inline=unused"]
+OPTIONS = ["--data-races", "--uninitialized", "--check-api", "--build-options", "-cl-opt-disable -Dalways_inline=unused"]
 # Faults that change no value: (file, text, with a fault, what is reported, in which kernel).
 FAULTS = [("cells.cl", "atomic_inc(&count[cell]);", "count[cell]++;", "data race at global memory", "cell_count"),
           ("rows.cl", "if (!fill) {", "if (!fill) { begin[e + 1000000] = 0;", "Invalid write of size 4 at global memory", "rows"),
