@@ -22,6 +22,7 @@
 struct lattice_load {
     vec3 force, lever[3], body;
     real traction;
+    vec3 lower, upper; /* t.n of the lower and the upper faces */
     vec3 acceleration, v, w;
 };
 
@@ -35,6 +36,8 @@ struct lattice_load {
         (l).lever[2] = LATTICE_VEC(p, LOAD_LEVER + 6);                                                                                               \
         (l).body = LATTICE_VEC(p, LOAD_BODY);                                                                                                        \
         (l).traction = (p)[LOAD_TRACTION];                                                                                                           \
+        (l).lower = v3((p)[LOAD_NORMAL], (p)[LOAD_NORMAL + 2], (p)[LOAD_NORMAL + 4]);                                                                \
+        (l).upper = v3((p)[LOAD_NORMAL + 1], (p)[LOAD_NORMAL + 3], (p)[LOAD_NORMAL + 5]);                                                            \
         (l).acceleration = LATTICE_VEC(p, LOAD_ACCELERATION);                                                                                        \
         (l).v = LATTICE_VEC(p, LOAD_VELOCITY);                                                                                                       \
         (l).w = LATTICE_VEC(p, LOAD_VELOCITY + 3);                                                                                                   \

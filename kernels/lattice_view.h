@@ -75,4 +75,27 @@ LAW struct lattice_view lattice_view_of(__global const preal *x, __global const 
     return s;
 }
 
+/* Force and torque of the link over a face. */
+LAW struct link_share lattice_face(int face, int mixed, struct lattice_view s, size_t l, int word, struct link_cell me)
+{
+    size_t i = s.begin + l, j = lattice_beside(s, face, l);
+    struct link_cell other = lattice_cell(s, j);
+    real p_me = 0, p_other = 0;
+    if (WITH_LINK_DAMPING) other = lattice_moving(s, j, other);
+    if (WITH_VOLUME) {
+        p_me = s.p[i];
+        p_other = s.p[j];
+    }
+    return lattice_link(face, LATTICE_LINKS(word) >> face & 1, me, other, lattice_constants(s, face, mixed, word, j), p_me, p_other);
+}
+
+/* What the link over a face adds to the sum of stretches of the cell [m]. eta of that cell; 0: without damping. */
+LAW real lattice_part(int face, int mixed, struct lattice_view s, size_t l, int word, struct link_cell me, real eta)
+{
+    size_t j = lattice_beside(s, face, l);
+    struct link_cell other = lattice_cell(s, j);
+    if (WITH_LINK_DAMPING) other = lattice_moving(s, j, other);
+    return lattice_stretch(face, word >> face & 1, me, other, lattice_constants(s, face, mixed, word, j), eta);
+}
+
 #endif

@@ -19,4 +19,13 @@
 /* Info of a run: its kind, and this if its cells have to be looked at one by one. */
 #define RUN_MIXED 256
 
+/* Sums over cells (lattice_account.h); of momentum and angular momentum three each. */
+#define ACCOUNT_KINETIC 0
+#define ACCOUNT_ROTATIONAL 1
+#define ACCOUNT_GRAVITY 2
+#define ACCOUNT_ELASTIC 3
+#define ACCOUNT_MOMENTUM 4
+#define ACCOUNT_ANGULAR 7
+#define ACCOUNT_WIDTH 10
+
 #endif

@@ -14,19 +14,6 @@ struct lattice_pull {
     vec3 given_v, given_w;   /* of fixed DOF [m/s] [rad/s] */
 };
 
-LAW struct link_share lattice_face(int face, int mixed, struct lattice_view s, size_t l, int word, struct link_cell me)
-{
-    size_t i = s.begin + l, j = lattice_beside(s, face, l);
-    struct link_cell other = lattice_cell(s, j);
-    real p_me = 0, p_other = 0;
-    if (WITH_LINK_DAMPING) other = lattice_moving(s, j, other);
-    if (WITH_VOLUME) {
-        p_me = s.p[i];
-        p_other = s.p[j];
-    }
-    return lattice_link(face, LATTICE_LINKS(word) >> face & 1, me, other, lattice_constants(s, face, mixed, word, j), p_me, p_other);
-}
-
 /* The six links in the order of the mask. */
 LAW struct link_share lattice_links(int mixed, struct lattice_view s, size_t l, int word, struct link_cell me)
 {

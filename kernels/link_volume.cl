@@ -2,14 +2,6 @@
  * too, from their own neighbours, in the same order as on the rank that owns them. */
 #include "lattice_view.h"
 
-LAW real lattice_part(int face, int mixed, struct lattice_view s, size_t l, int word, struct link_cell me, real eta)
-{
-    size_t j = lattice_beside(s, face, l);
-    struct link_cell other = lattice_cell(s, j);
-    if (WITH_LINK_DAMPING) other = lattice_moving(s, j, other);
-    return lattice_stretch(face, word >> face & 1, me, other, lattice_constants(s, face, mixed, word, j), eta);
-}
-
 LAW real lattice_pressure(int mixed, struct lattice_view s, size_t l, int word, __global const real *cell, real traction)
 {
     struct volume_constants c;

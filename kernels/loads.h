@@ -8,8 +8,9 @@ enum {
     LOAD_BODY = 12,         /* 3: force that turns with the cell (pressure), R B [N] */
     LOAD_TRACTION = 15,     /* 1: sum over pressed faces of t.n, for Th [Pa] */
     LOAD_ACCELERATION = 16, /* 3: not divided by mass [m/s2] */
-    LOAD_VELOCITY = 19,     /* 6: v and w of DOF that are prescribed (their CELL_FIX bit is set) [m/s] [rad/s] */
-    LOAD_WIDTH = 25
+    LOAD_NORMAL = 19,       /* 6: what LOAD_TRACTION sums, t.n of each face in the order of the mask of links [Pa]; only what is measured reads it */
+    LOAD_VELOCITY = 25,     /* 6: v and w of DOF that are prescribed (their CELL_FIX bit is set) [m/s] [rad/s] */
+    LOAD_WIDTH = 31
 };
 
 #endif

@@ -11,9 +11,10 @@
 
 #include "axis.h"
 
+/* v first: in float, members of a struct that is passed go in pairs as vectors, and pairs that straddle v keep pocl from vectorising. */
 struct quat {
-    preal w;
     pvec3 v;
+    preal w;
 };
 
 LAW struct quat quat_of(preal w, preal x, preal y, preal z)

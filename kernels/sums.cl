@@ -1,46 +1,11 @@
 /* Sums over elements and contacts for the account of energy and momentum, in integers (sums.h), so that their order does not matter.
  *
- * Each of SUMS_GROUPS groups strides over the items, every work-item adds its own in registers, one work-item per number adds up the group's in local
- * memory, and the host adds up partial [SUMS_GROUPS][sums][SUMS_WIDTH]. For devices with double precision.
- *
  * lint: WITH_SUMS needs fp64 */
 #include "element.h"
 #include "ledger.h"
-#include "sums.h"
+#include "sums_group.h"
 
 #if WITH_SUMS
-#define FIRST ((int)(get_group_id(0) * SUMS_GROUP + get_local_id(0)))
-#define STRIDE (SUMS_GROUPS * SUMS_GROUP)
-
-/* Rows [SUMS_WIDTH] of local memory from sum number k on. */
-LAW void sums_put(__local long *part, int k, struct sum s)
-{
-    __local long *row = part + k * SUMS_WIDTH * SUMS_GROUP + get_local_id(0);
-    row[0] = s.hi;
-    row[SUMS_GROUP] = s.mid;
-    row[2 * SUMS_GROUP] = s.lo;
-    row[3 * SUMS_GROUP] = s.bad;
-}
-
-/* After a barrier: the group's sums of n_sum quantities to their place in `partial`. */
-LAW void sums_finish(__local const long *part, int n_sum, __global long *partial)
-{
-    int g = get_group_id(0), width = n_sum * SUMS_WIDTH;
-    if (g >= SUMS_GROUPS) return;
-    for (int k = get_local_id(0); k < width; k += SUMS_GROUP) {
-        long total = 0;
-        for (int l = 0; l < SUMS_GROUP; l++) total += part[k * SUMS_GROUP + l];
-        partial[g * width + k] = total;
-    }
-}
-
-LAW struct sum sums_zero(void)
-{
-    struct sum s;
-    s.hi = s.mid = s.lo = s.bad = 0;
-    return s;
-}
-
 /* SUMS_ELEMENT sums over owned elements. origin: where gravity's potential is zero. */
 __kernel __attribute__((reqd_work_group_size(SUMS_GROUP, 1, 1)))
 void sums_elements(int n, __global const preal *position, __global const real *motion, double gravity_x, double gravity_y, double gravity_z,
@@ -50,7 +15,7 @@ void sums_elements(int n, __global const preal *position, __global const real *m
     struct sum sum[SUMS_ELEMENT];
     double gravity[3] = {gravity_x, gravity_y, gravity_z}, origin[3] = {origin_x, origin_y, origin_z}, term[SUMS_ELEMENT];
     for (int k = 0; k < SUMS_ELEMENT; k++) sum[k] = sums_zero();
-    for (int i = FIRST; i < n; i += STRIDE) {
+    for (int i = SUMS_FIRST; i < n; i += SUMS_STRIDE) {
         preal4 x = LOAD_POSITION(i);
         real4 v = LOAD_VELOCITY(i), w = (real4)(0);
         struct sums_element e;
@@ -85,7 +50,7 @@ void sums_ledger(int n, int n_first, int second, int n_owned, int capacity, __gl
     __local long part[LEDGER_WIDTH * SUMS_WIDTH * SUMS_GROUP];
     struct sum sum[LEDGER_WIDTH];
     for (int k = 0; k < LEDGER_WIDTH; k++) sum[k] = sums_zero();
-    for (int i = FIRST; i < n; i += STRIDE) {
+    for (int i = SUMS_FIRST; i < n; i += SUMS_STRIDE) {
         int p = i < n_first ? i : i - n_first + second;
         if (element[p] >= n_owned) continue;
         for (int k = 0; k < LEDGER_WIDTH; k++) {
@@ -118,7 +83,7 @@ void sums_gone(int n, int n_first, int second, int n_owned, int capacity, __glob
 {
     __local long part[SUMS_WIDTH * SUMS_GROUP];
     struct sum sum = sums_zero();
-    for (int i = FIRST; i < n; i += STRIDE) {
+    for (int i = SUMS_FIRST; i < n; i += SUMS_STRIDE) {
         int p = i < n_first ? i : i - n_first + second, e = element[p];
         if (e >= n_owned) continue;
         long a = gid[e], b = gid[partner[p]];
@@ -138,7 +103,7 @@ void sums_gone_walls(int n, int capacity, __global const int *candidate, __globa
 {
     __local long part[SUMS_WIDTH * SUMS_GROUP];
     struct sum sum = sums_zero();
-    for (int p = FIRST; p < n; p += STRIDE) {
+    for (int p = SUMS_FIRST; p < n; p += SUMS_STRIDE) {
         size_t at = (size_t)LEDGER_ELASTIC * capacity + p;
         if (!gone_wall[wall_of[candidate[p]]]) continue;
         sums_add(&sum, ledger[at]);

@@ -6,6 +6,7 @@
 #include "../kernels/ledger.h"
 #include "../kernels/sums.h"
 #include "fail.h"
+#include "integer_sums.h"
 #include "sim.h"
 
 /* Totals of this rank. The elastic energy's entry of `taken` stays zero. */
@@ -23,38 +24,6 @@ struct energy {
     struct sum gravity_before; /* of this rank's elements, before they change owners */
     bool wraps;                /* some period has a component of gravity along it */
 };
-
-static void add(struct sum *a, struct sum b, int sign)
-{
-    a->hi += sign * b.hi;
-    a->mid += sign * b.mid;
-    a->lo += sign * b.lo;
-    a->bad += b.bad;
-}
-
-/* Carries: 0 <= lo, mid < 2^30, so that integers stay small however often sums are added to sums. Shifts of negative numbers round down. */
-static void carry(struct sum *s)
-{
-    int64_t from_lo = s->lo >> 30;
-    s->lo -= from_lo * ((int64_t)1 << 30);
-    s->mid += from_lo;
-    int64_t from_mid = s->mid >> 30;
-    s->mid -= from_mid * ((int64_t)1 << 30);
-    s->hi += from_mid;
-}
-
-/* The nearest double but for the last bit; a function of the sum alone, not of how it lies in its three integers. */
-static double value(struct sum s)
-{
-    carry(&s);
-    double sign = s.hi < 0 ? -1 : 1;
-    if (s.hi < 0) { /* by magnitude: a small negative number would lose its digits against 2^-20 */
-        s = (struct sum){-s.hi, -s.mid, -s.lo, s.bad};
-        carry(&s);
-    }
-    double rest = ldexp((double)(s.mid * ((int64_t)1 << 30) + s.lo), -80);
-    return s.bad ? (double)NAN : sign * (ldexp((double)s.hi, -20) + rest);
-}
 
 struct energy *energy_create(struct sim *s)
 {
@@ -105,21 +74,6 @@ void energy_free(struct device *dev, struct energy *e)
     free(e);
 }
 
-/* Runs a kernel of sums.cl and adds its n_sum <= SUMS_ELEMENT sums to `sum`. */
-static void run(struct device *dev, struct energy *e, struct launch *launch, int n_sum, struct sum *sum)
-{
-    int64_t partial[SUMS_GROUPS * SUMS_ELEMENT * SUMS_WIDTH];
-    launch_run(launch, dev->compute, SUMS_GROUPS * SUMS_GROUP, 0, NULL, NULL);
-    buffer_read(dev, &e->partial, 0, (size_t)(SUMS_GROUPS * n_sum * SUMS_WIDTH) * sizeof *partial, partial);
-    for (int k = 0; k < n_sum; k++) {
-        for (int g = 0; g < SUMS_GROUPS; g++) {
-            const int64_t *p = partial + (g * n_sum + k) * SUMS_WIDTH;
-            add(&sum[k], (struct sum){p[0], p[1], p[2], p[3]}, 1);
-        }
-        carry(&sum[k]);
-    }
-}
-
 static void sum_elements(struct sim *s, struct sum sum[SUMS_ELEMENT])
 {
     struct launch *k = s->energy->elements;
@@ -127,7 +81,7 @@ static void sum_elements(struct sim *s, struct sum sum[SUMS_ELEMENT])
     launch_set_int(k, "n", (int)p->n_owned);
     launch_bind_buffer(k, "position", &p->field[FIELD_STATE].now);
     launch_bind_buffer(k, "motion", &p->field[FIELD_STATE].now);
-    run(s->dev, s->energy, k, SUMS_ELEMENT, sum);
+    integer_sums_run(s->dev, k, &s->energy->partial, SUMS_ELEMENT, sum);
 }
 
 /* Which contacts a kernel goes over: the pairs of which we own the lower element, or all candidates at walls. */
@@ -151,13 +105,13 @@ static struct sum collect(struct sim *s)
     struct energy *e = s->energy;
     for (int wall = 0; wall < (s->wall_contacts ? 2 : 1); wall++) {
         set_contacts(e->ledger, s, wall);
-        run(s->dev, e, e->ledger, LEDGER_WIDTH, sum);
+        integer_sums_run(s->dev, e->ledger, &e->partial, LEDGER_WIDTH, sum);
     }
     elastic = sum[LEDGER_ELASTIC];
     sum[LEDGER_ELASTIC] = (struct sum){0};
     for (int k = 0; k < LEDGER_WIDTH; k++) {
-        add(&e->total.taken[k], sum[k], 1);
-        carry(&e->total.taken[k]);
+        integer_sums_add(&e->total.taken[k], sum[k], 1);
+        integer_sums_carry(&e->total.taken[k]);
     }
     return elastic;
 }
@@ -206,7 +160,7 @@ static void remove_springs(struct sim *s, int64_t n_gone)
     for (int wall = 0; wall < (s->wall_contacts ? 2 : 1); wall++) {
         set_contacts(e->gone, s, wall);
         launch_bind_buffer(e->gone, "partner", wall ? &s->wall_contacts->now.element : &s->pairs->now.pair_j);
-        run(s->dev, e, e->gone, 1, &e->total.removed);
+        integer_sums_run(s->dev, e->gone, &e->partial, 1, &e->total.removed);
     }
 }
 
@@ -228,7 +182,7 @@ static void remove_walls(struct sim *s)
         launch_bind_buffer(e->gone_walls, "wall_of", &w->wall_of);
         launch_bind_buffer(e->gone_walls, "gone_wall", &e->gone_wall);
         launch_bind_buffer(e->gone_walls, "ledger", &w->ledger);
-        run(s->dev, e, e->gone_walls, 1, &e->total.removed);
+        integer_sums_run(s->dev, e->gone_walls, &e->partial, 1, &e->total.removed);
     }
     free(gone);
 }
@@ -249,7 +203,7 @@ static void remove_elements(struct sim *s, struct sum *gravity)
         for (int k = SUMS_KINETIC; k <= SUMS_GRAVITY; k++) sums_add(&s->energy->total.removed, term[k]);
         sums_add(gravity, term[SUMS_GRAVITY]);
     }
-    carry(&s->energy->total.removed);
+    integer_sums_carry(&s->energy->total.removed);
 }
 
 void energy_moved(struct sim *s, int64_t n_removed)
@@ -261,9 +215,9 @@ void energy_moved(struct sim *s, int64_t n_removed)
     if (e->wraps) sum_elements(s, after);
     remove_elements(s, &after[SUMS_GRAVITY]);
     if (!e->wraps) return;
-    add(&e->total.wrapped, e->gravity_before, 1);
-    add(&e->total.wrapped, after[SUMS_GRAVITY], -1);
-    carry(&e->total.wrapped);
+    integer_sums_add(&e->total.wrapped, e->gravity_before, 1);
+    integer_sums_add(&e->total.wrapped, after[SUMS_GRAVITY], -1);
+    integer_sums_carry(&e->total.wrapped);
 }
 
 void energy_now(struct sim *s, struct energy_sums *out)
@@ -277,17 +231,10 @@ void energy_now(struct sim *s, struct energy_sums *out)
         if (s->features.energy) sum[ELASTIC] = collect(s);
         for (int k = 0; k < LEDGER_WIDTH; k++) sum[TOTALS + k] = e->total.taken[k];
         sum[REMOVED] = e->total.removed;
-        add(&sum[SUMS_GRAVITY], e->total.wrapped, 1);
+        integer_sums_add(&sum[SUMS_GRAVITY], e->total.wrapped, 1);
     }
     for (int k = 0; k < N; k++) sum[k].bad += !e->program || (k >= SUMS_ELEMENT && !s->features.energy);
-    int64_t all[N][SUMS_WIDTH];
-    for (int k = 0; k < N; k++) {
-        carry(&sum[k]);
-        const int64_t one[SUMS_WIDTH] = {sum[k].hi, sum[k].mid, sum[k].lo, sum[k].bad};
-        for (int i = 0; i < SUMS_WIDTH; i++) all[k][i] = one[i];
-    }
-    comm_sum_i64(s->comm, all[0], N * SUMS_WIDTH);
-    for (int k = 0; k < N; k++) v[k] = value((struct sum){all[k][0], all[k][1], all[k][2], all[k][3]});
+    integer_sums_all(s->comm, sum, N, v);
     const double *taken = v + TOTALS;
     *out = (struct energy_sums){v[SUMS_KINETIC], v[SUMS_ROTATIONAL], v[SUMS_GRAVITY], v[ELASTIC], taken[LEDGER_NORMAL], taken[LEDGER_TANGENTIAL],
         taken[LEDGER_SLIDING], taken[LEDGER_ROLLING], taken[LEDGER_BONDS], taken[LEDGER_WORK], v[REMOVED],

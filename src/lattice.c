@@ -101,9 +101,9 @@ static void create_tables(struct lattice *l, const struct lattice_cells *cells)
     lattice_rows_create(l);
 }
 
-static struct launch *create_launch(struct lattice *l, const char *kernel, const struct buffer *list)
+struct launch *lattice_launch(struct lattice *l, const struct program *program, const char *kernel, const struct buffer *list)
 {
-    struct launch *k = launch_create(l->program, kernel);
+    struct launch *k = launch_create(program, kernel);
     static const char *const name[] = {"info", "base", "word", "x", "v", "link", "cell", "p", "row", "rows", "sum_x", "sum_v", "kick_table", NULL};
     const struct buffer *buffer[] = {
         &l->info, &l->base, &l->word, &l->x, &l->v, &l->link, &l->cell, &l->pressure, &l->row, &l->rows.buffer, &l->sum_x, &l->sum_v, &l->kick};
@@ -170,9 +170,9 @@ struct lattice *lattice_create(struct device *dev, const struct comm *comm, cons
     free(text);
     create_state(l);
     create_tables(l, cells);
-    l->force = create_launch(l, "link_force", &l->force_list);
-    if (l->features.volume) l->volume = create_launch(l, "link_volume", &l->volume_list);
-    if (l->scheme->first > 0) l->first = create_launch(l, "lattice_first", &l->force_list);
+    l->force = lattice_launch(l, l->program, "link_force", &l->force_list);
+    if (l->features.volume) l->volume = lattice_launch(l, l->program, "link_volume", &l->volume_list);
+    if (l->scheme->first > 0) l->first = lattice_launch(l, l->program, "lattice_first", &l->force_list);
     if (comm->n_rank > 1)
         l->halo = lattice_halo_create(dev, comm, l->program, l->layout, &l->x, LATTICE_X(l->features.turn), lattice_x_bytes(l), &l->v,
             l->features.link_damping ? LATTICE_V : 0, lattice_v_bytes(l));

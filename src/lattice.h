@@ -66,6 +66,11 @@ size_t lattice_v_bytes(const struct lattice *l);
 /* Writes doubles as numbers of the device. */
 void lattice_put(struct lattice *l, struct buffer *buffer, bool is_float, const double *value, int64_t n);
 
+/* A kernel of a program of this lattice, bound to its tables and state; list: runs that it goes over. */
+struct launch *lattice_launch(struct lattice *l, const struct program *program, const char *kernel, const struct buffer *list);
+/* Plane `number` of a buffer, of this rank's cells in the order of layout->gid; the caller frees. */
+double *lattice_read_plane(const struct lattice *l, const struct buffer *buffer, bool is_float, int64_t number);
+
 /* Makes the rows of loads those of time t, enqueued before the next kernels (lattice_rows.c). */
 void lattice_rows_create(struct lattice *l);
 void lattice_rows_free(struct lattice *l);

@@ -32,14 +32,19 @@ struct lattice_state *lattice_state_create(const struct sim *s)
         if (!l->features.turn) memcpy(t->turn[i], theta[i], sizeof theta[i]);
     }
     free(theta);
+    if (s->solid->stress) {
+        t->stress = fail_alloc(n * sizeof *t->stress);
+        t->von_mises = fail_alloc(n * sizeof *t->von_mises);
+        lattice_stress_run(s->solid->stress, t->stress, t->von_mises);
+    }
     return t;
 }
 
 void lattice_state_free(struct lattice_state *t)
 {
     if (!t) return;
-    void *own[] = {t->centre, t->u, t->turn, t->v, t->w, t};
-    for (int k = 0; k < 6; k++) free(own[k]);
+    void *own[] = {t->centre, t->u, t->turn, t->v, t->w, t->stress, t->von_mises, t};
+    for (int k = 0; k < 8; k++) free(own[k]);
 }
 
 static void cross(const double a[3], const double b[3], double out[3])
@@ -112,6 +117,8 @@ static void shown_fields(const struct sim *s, const struct lattice_state *t, str
             add(f, "rotation", t->turn_width == 4 ? "1" : "rad", t->turn_width == 4 ? "quaternion w, x, y, z" : "small rotation about x, y, z, and 0",
                 COLUMN_F64, 4, t->turn);
         else if (!strcmp(name, "id")) add(f, "id", "1", "global id", COLUMN_I64, 1, t->gid);
+        else if (!strcmp(name, "stress")) add(f, "stress", "Pa", "stress in the world's axes, rows of the tensor", COLUMN_F64, 9, t->stress);
+        else if (!strcmp(name, "von_mises")) add(f, "von_mises", "Pa", "von Mises' equivalent stress", COLUMN_F64, 1, t->von_mises);
         else {
             f->own[f->n_own] = integers(s, t, name);
             add(f, name, "1", "index in the scene; owner: rank", COLUMN_I32, 1, f->own[f->n_own++]);

@@ -180,11 +180,12 @@ static void fill_term(const struct scene *scene, const struct node *node, double
                 value[LOAD_FORCE + c] += of->value[c] / n;
                 value[LOAD_LEVER + 3 * a + c] += sign * 0.5 * h * (of->value[c] / n);
             }
-            value[LOAD_TRACTION] += sign * (of->value[a] / n) / area;
+            value[LOAD_NORMAL + f] += sign * (of->value[a] / n) / area;
         } else {
             value[LOAD_BODY + a] -= sign * of->pressure * area;
-            value[LOAD_TRACTION] -= of->pressure;
+            value[LOAD_NORMAL + f] -= of->pressure;
         }
+        value[LOAD_TRACTION] += value[LOAD_NORMAL + f];
     }
 }
 

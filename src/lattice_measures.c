@@ -10,9 +10,12 @@ int lattice_method_measure_columns(enum measure_kind kind, const struct series_c
 {
     static const struct series_column probe[] = {{"x", "m"}, {"y", "m"}, {"z", "m"}, {"u_x", "m"}, {"u_y", "m"}, {"u_z", "m"}, {"v_x", "m/s"},
         {"v_y", "m/s"}, {"v_z", "m/s"}, {"w_x", "rad/s"}, {"w_y", "rad/s"}, {"w_z", "rad/s"}};
-    (void)kind;
-    *column = probe;
-    return 12;
+    static const struct series_column energy[] = {{"kinetic", "J"}, {"rotational", "J"}, {"gravity", "J"}, {"elastic", "J"}};
+    static const struct series_column momentum[] = {
+        {"p_x", "N s"}, {"p_y", "N s"}, {"p_z", "N s"}, {"l_x", "N m s"}, {"l_y", "N m s"}, {"l_z", "N m s"}};
+    static const struct series_column peak[] = {{"von_mises", "Pa"}, {"x", "m"}, {"y", "m"}, {"z", "m"}};
+    *column = kind == MEASURE_ENERGY ? energy : kind == MEASURE_MOMENTUM ? momentum : kind == MEASURE_STRESS_MAX ? peak : probe;
+    return kind == MEASURE_ENERGY || kind == MEASURE_STRESS_MAX ? 4 : kind == MEASURE_MOMENTUM ? 6 : 12;
 }
 
 /* The cell whose centre at the start is nearest, the first of several; the same on every rank. */
@@ -48,10 +51,42 @@ static void measure_probe(struct sim *s, const double at[3], const struct lattic
     memcpy(value, bits, sizeof bits);
 }
 
+/* The largest von Mises stress, and the centre at the start of the cell that has it, the first of several. */
+static void measure_peak(struct sim *s, const struct lattice_state *t, double *value)
+{
+    double largest = -1;
+    int64_t gid = INT64_MAX;
+    for (int64_t i = 0; i < t->n; i++) largest = fmax(largest, t->von_mises[i]);
+    comm_max_f64(s->comm, &largest, 1);
+    for (int64_t i = t->n; i-- > 0;)
+        if (t->von_mises[i] >= largest) gid = t->gid[i];
+    comm_min_i64(s->comm, &gid, 1);
+    value[0] = gid == INT64_MAX ? (double)NAN : largest;
+    if (gid < INT64_MAX) lattice_cells_centre(s->solid->cells, gid, value + 1);
+}
+
 void lattice_method_measure(struct sim *s, const bool *due, double (*value)[MEASURE_COLUMNS])
 {
-    struct lattice_state *t = lattice_state_create(s);
-    for (int i = 0; i < s->scene->n_measure; i++)
-        if (due[i]) measure_probe(s, s->scene->measure[i].at, t, value[i]);
+    bool by_cell = false, by_energy = false;
+    for (int i = 0; i < s->scene->n_measure; i++) {
+        bool is_energy = s->scene->measure[i].kind == MEASURE_ENERGY || s->scene->measure[i].kind == MEASURE_MOMENTUM;
+        by_energy |= due[i] && is_energy;
+        by_cell |= due[i] && !is_energy;
+    }
+    struct lattice_energy e = {.kinetic = 0};
+    if (by_energy) lattice_energy_now(s->solid->account, &e);
+    struct lattice_state *t = by_cell ? lattice_state_create(s) : NULL;
+    const double energy[] = {e.kinetic, e.rotational, e.gravity, e.elastic};
+    for (int i = 0; i < s->scene->n_measure; i++) {
+        const struct measure *what = &s->scene->measure[i];
+        if (!due[i]) continue;
+        if (what->kind == MEASURE_ENERGY) memcpy(value[i], energy, sizeof energy);
+        else if (what->kind == MEASURE_STRESS_MAX) measure_peak(s, t, value[i]);
+        else if (what->kind == MEASURE_PROBE) measure_probe(s, what->at, t, value[i]);
+        else {
+            memcpy(value[i], e.momentum, sizeof e.momentum);
+            memcpy(value[i] + 3, e.angular, sizeof e.angular);
+        }
+    }
     lattice_state_free(t);
 }

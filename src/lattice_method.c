@@ -11,18 +11,33 @@
 #include "report.h"
 #include "scene_report.h"
 
+static bool is_listed(char *const *list, int n, const char *word)
+{
+    for (int k = 0; k < n; k++)
+        if (!strcmp(list[k], word)) return true;
+    return false;
+}
+
+static bool wants_stress(const struct scene *scene)
+{
+    bool wants =
+        is_listed(scene->output.field, scene->output.n_field, "stress") || is_listed(scene->output.field, scene->output.n_field, "von_mises");
+    for (int m = 0; m < scene->n_measure; m++) wants |= scene->measure[m].kind == MEASURE_STRESS_MAX;
+    return wants;
+}
+
 /* What the scene language knows and this program does not do yet. */
 static void refuse(const struct scene *scene, struct scene_errors *errors)
 {
-    static const char *const field[] = {"stress", "von_mises", "broken"};
-    for (int k = 0; k < scene->output.n_field; k++)
-        for (int f = 0; f < 3; f++)
-            if (!strcmp(scene->output.field[k], field[f]))
-                scene_errors_add(errors, "%s: output.fields: %s of method lattice is not in this version", scene->path, field[f]);
-    for (int m = 0; m < scene->n_measure; m++)
-        if (scene->measure[m].kind != MEASURE_PROBE)
-            scene_errors_add(errors, "%s:%d: measure '%s': of method lattice this version has probe only", scene->path, scene->measure[m].line,
-                scene->measure[m].name);
+    if (is_listed(scene->output.field, scene->output.n_field, "broken"))
+        scene_errors_add(errors, "%s: output.fields: broken: links do not break in this version", scene->path);
+    for (int m = 0; m < scene->n_measure; m++) {
+        static const char *const later[] = {"rotation", "stress", "von_mises"};
+        const struct measure *what = &scene->measure[m];
+        for (int k = 0; k < 3; k++)
+            if (is_listed(what->field, what->n_field, later[k]))
+                scene_errors_add(errors, "%s:%d: measure '%s': a probe of %s is not in this version", scene->path, what->line, what->name, later[k]);
+    }
     for (int m = 0; m < scene->n_material; m++)
         if (scene->material[m].has_strength)
             scene_errors_add(errors, "%s: materials.%s.strength: links do not break in this version", scene->path, scene->material[m].name);
@@ -56,6 +71,9 @@ static void setup(struct sim *s)
     struct lattice_run *r = s->solid;
     log_print(s->log, "%lld cells in %d %s", (long long)s->n_first, s->scene->n_body, s->scene->n_body == 1 ? "body" : "bodies");
     r->lattice = lattice_create(s->dev, s->comm, r->cells, &r->input->options);
+    r->account = lattice_energy_create(r->lattice, r->cells);
+    if (wants_stress(s->scene)) r->stress = lattice_stress_create(r->lattice, s->scene->lattice.stress == STRESS_EXTRAPOLATED);
+    lattice_energy_now(r->account, &r->energy_start);
 }
 
 static void warn(struct sim *s)
@@ -66,6 +84,8 @@ static void warn(struct sim *s)
 static void release(struct sim *s)
 {
     if (!s->solid) return;
+    lattice_energy_free(s->solid->account);
+    lattice_stress_free(s->solid->stress);
     lattice_free(s->solid->lattice);
     lattice_input_free(s->solid->input);
     lattice_cells_free(s->solid->cells);
@@ -135,9 +155,21 @@ static void report_features(const struct sim *s, struct report *r)
 
 static void report_energy(struct sim *s, struct report *r, bool observed)
 {
-    (void)s;
-    (void)r;
-    (void)observed;
+    struct lattice_energy now = s->solid->energy_start;
+    const struct lattice_energy *both[] = {&s->solid->energy_start, &now};
+    static const char *const name[] = {"start", "end"};
+    if (observed) lattice_energy_now(s->solid->account, &now);
+    report_begin(r, "energy");
+    for (int k = 0; k < 2; k++) {
+        report_begin(r, name[k]);
+        report_number(r, "kinetic", both[k]->kinetic);
+        report_number(r, "rotational", both[k]->rotational);
+        report_number(r, "gravity", both[k]->gravity);
+        report_number(r, "elastic", both[k]->elastic);
+        report_end(r);
+    }
+    report_end(r);
+    report_numbers(r, "momentum", now.momentum, 3);
 }
 
 static void report_kernels(const struct sim *s, struct report *r)

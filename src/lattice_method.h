@@ -2,8 +2,9 @@
 #ifndef DEMOCLES_LATTICE_METHOD_H
 #define DEMOCLES_LATTICE_METHOD_H
 
-#include "lattice.h"
+#include "lattice_energy.h"
 #include "lattice_input.h"
+#include "lattice_stress.h"
 #include "sim.h"
 
 /* What a run of the lattice owns. */
@@ -11,6 +12,9 @@ struct lattice_run {
     struct lattice_cells *cells; /* of all ranks */
     struct lattice_input *input;
     struct lattice *lattice;
+    struct lattice_stress *stress; /* NULL where nobody asks for it */
+    struct lattice_account *account;
+    struct lattice_energy energy_start;
 };
 
 /* The observed state of this rank's cells on the host, and where their centres were at the start; [n] in ascending id. */
@@ -18,10 +22,11 @@ struct lattice_state {
     int64_t n;
     const int64_t *gid;                                         /* borrowed */
     double (*centre)[3], (*u)[3], (*turn)[4], (*v)[3], (*w)[3]; /* [m], [m], see below, [m/s], [rad/s] */
+    double (*stress)[9], *von_mises;                            /* [Pa]; NULL where the scene does not ask for them */
     int turn_width;                                             /* 4: turn is a quaternion w, x, y, z; 3: a small rotation [rad], the fourth is 0 */
 };
-struct lattice_state *lattice_state_create(const struct sim *s);
-void lattice_state_free(struct lattice_state *state); /* NULL is fine */
+struct lattice_state *lattice_state_create(const struct sim *s); /* collective */
+void lattice_state_free(struct lattice_state *state);            /* NULL is fine */
 /* R r - r, or theta x r, of cell i for a vector r of the undeformed cell [m]. */
 void lattice_state_turn(const struct lattice_state *state, int64_t i, const double r[3], double out[3]);
 

@@ -7,8 +7,7 @@
 #include "digest.h"
 #include "fail.h"
 
-/* One plane of this rank, as it is on the device. */
-static double *read_plane(const struct lattice *l, const struct buffer *buffer, bool is_float, int64_t number)
+double *lattice_read_plane(const struct lattice *l, const struct buffer *buffer, bool is_float, int64_t number)
 {
     int64_t n = l->layout->plane;
     size_t bytes = is_float ? sizeof(float) : sizeof(double);
@@ -62,7 +61,7 @@ void lattice_read(const struct lattice *l, const struct lattice_motion *m)
         for (int a = 0; a < part[p].width && part[p].value; a++) {
             int64_t set = part[p].is_x ? l->x_observed * LATTICE_X(l->features.turn) : l->v_observed * LATTICE_V;
             bool is_float = part[p].is_x ? l->features.position_is_float : l->features.real_is_float;
-            double *plane = read_plane(l, part[p].is_x ? &l->x : &l->v, is_float, set + part[p].first + a);
+            double *plane = lattice_read_plane(l, part[p].is_x ? &l->x : &l->v, is_float, set + part[p].first + a);
             for (int64_t k = 0; k < l->layout->n_owned; k++) part[p].value[k * part[p].width + a] = plane[k];
             free(plane);
         }

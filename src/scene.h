@@ -128,14 +128,14 @@ struct boundary {
 
 enum lattice_law { LAW_ISOTROPIC, LAW_SEED }; /* in the order of enum link_set */
 enum rotation { ROTATION_FINITE, ROTATION_SMALL };
-enum stress { STRESS_AVERAGE, STRESS_EXTRAPOLATED };
+enum stress_form { STRESS_AVERAGE, STRESS_EXTRAPOLATED };
 struct lattice_method {
     enum lattice_law law;
     enum rotation rotation;
-    enum stress stress; /* of cells at a surface */
-    bool relax;         /* look for equilibrium, and stop there */
-    double tolerance;   /* [1] of the largest load */
-    long look_every;    /* steps between two looks at what is left */
+    enum stress_form stress; /* of cells at a surface */
+    bool relax;              /* look for equilibrium, and stop there */
+    double tolerance;        /* [1] of the largest load */
+    long look_every;         /* steps between two looks at what is left */
 };
 
 enum surface_kind { SURFACE_PLANE, SURFACE_RECTANGLE, SURFACE_BOX, SURFACE_CYLINDER, SURFACE_STL };

@@ -21,6 +21,7 @@ CASES = [
     ("lattice", "double", ["small"]),
     ("lattice", "single", ["small"]),
     ("lattice", "double", ["turn", "volume"]),
+    ("lattice", "single", ["turn", "volume"]),
     ("lattice", "double", ["small", "volume", "rk4"]),
 ]
 

@@ -96,17 +96,20 @@ struct pull {
     vec3 a, b, given_v, given_w;
 };
 
+static struct link_share share_of(const struct host *h, int64_t i, int face)
+{
+    int64_t j = h->neighbour[i][face];
+    struct link_share none = {{0, 0, 0}, {0, 0, 0}};
+    if (j < 0) return none;
+    return lattice_link(face, 1, h->now[i], h->now[j], face % 2 ? constants(h, i, j) : constants(h, j, i), h->p[i], h->p[j]);
+}
+
 static struct pull pull_of(const struct host *h, int64_t i)
 {
     struct link_share sum = {{0, 0, 0}, {0, 0, 0}};
     struct pull r = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     const real *cell = h->cell + h->cells->kind_of[i] * CELL_WIDTH;
-    for (int f = 0; f < 6; f++) {
-        int64_t j = h->neighbour[i][f];
-        struct link_share share = {{0, 0, 0}, {0, 0, 0}};
-        if (j >= 0) share = lattice_link(f, 1, h->now[i], h->now[j], f % 2 ? constants(h, i, j) : constants(h, j, i), h->p[i], h->p[j]);
-        sum = lattice_add(sum, share);
-    }
+    for (int f = 0; f < 6; f++) sum = lattice_add(sum, share_of(h, i, f));
     vec3 add = v3((real)h->options.gravity[0], (real)h->options.gravity[1], (real)h->options.gravity[2]);
     if (WITH_LOADS) {
         struct lattice_load load = load_of(h, i);
@@ -217,4 +220,24 @@ void host_observe(const struct host *h, struct link_cell *seen)
     load_rows(&copy, t, t, t);
     if (WITH_VOLUME) pressures(&copy);
     split(&copy, h->scheme->n, 0, seen);
+}
+
+void host_stress(const struct host *h, struct link_cell *seen, bool extrapolate, struct stress *stress, real *von_mises)
+{
+    struct host copy = *h;
+    double t = (double)h->step * h->options.dt;
+    copy.now = seen;
+    load_rows(&copy, t, t, t);
+    if (WITH_VOLUME) pressures(&copy);
+    for (int64_t i = 0; i < h->n; i++) {
+        struct lattice_through f;
+        struct lattice_load load = {.traction = 0};
+        vec3 *const force[6] = {&f.x[0], &f.x[1], &f.y[0], &f.y[1], &f.z[0], &f.z[1]};
+        for (int face = 0; face < 6; face++) *force[face] = share_of(&copy, i, face).force;
+        if (WITH_LOADS) load = load_of(&copy, i);
+        real edge = h->link[h->cells->kind_of[i] * (h->cells->n_kind + 1) * LINK_WIDTH + 6];
+        struct stress s = lattice_stress_of(f, seen[i], load, h->cells->bits[i] & 63, edge, extrapolate);
+        stress[i] = lattice_stress_world(s, seen[i]);
+        von_mises[i] = stress_von_mises(s);
+    }
 }

@@ -3,7 +3,7 @@
 #define LATTICE_HOST_H
 
 #include "lattice_bodies.h"
-#include "lattice_state.h"
+#include "lattice_through.h"
 
 struct host {
     const struct lattice_cells *cells;
@@ -26,5 +26,7 @@ void host_free(struct host *h);
  * stays. */
 void host_step(struct host *h);
 void host_observe(const struct host *h, struct link_cell *seen);
+/* Stress of all cells [n] in the state `seen` of this step. */
+void host_stress(const struct host *h, struct link_cell *seen, bool extrapolate, struct stress *stress, real *von_mises);
 
 #endif

@@ -6,6 +6,7 @@
 
 #include "fail.h"
 #include "lattice_host.h"
+#include "lattice_stress.h"
 
 static struct comm *comm;
 static const double dt = 1e-4, gravity[3] = {0.5, -1, -9.81};
@@ -87,7 +88,33 @@ static void compare(const struct lattice *l, const struct link_cell *host)
     free(m.w);
 }
 
-/* Observed at steps 0, 3 and 7. */
+static void compare_stress(struct lattice *l, const struct host *h, struct link_cell *seen)
+{
+    size_t n = (size_t)l->n_global;
+    struct stress *host = fail_alloc(n * sizeof *host);
+    real *von_mises = fail_alloc(n * sizeof *von_mises);
+    double(*device)[9] = fail_alloc(n * sizeof *device), *equivalent = fail_alloc(n * sizeof *equivalent);
+    for (int form = 0; form < 2; form++) {
+        struct lattice_stress *s = lattice_stress_create(l, form == 1);
+        lattice_stress_run(s, device, equivalent);
+        lattice_stress_free(s);
+        host_stress(h, seen, form, host, von_mises);
+        for (int64_t i = 0; i < l->n_global; i++) {
+            const struct stress *c = &host[i];
+            double mises = (double)von_mises[i];
+            same("stress x", i, device[i], (double)c->xx, (double)c->xy, (double)c->zx);
+            same("stress y", i, device[i] + 3, (double)c->xy, (double)c->yy, (double)c->yz);
+            same("stress z", i, device[i] + 6, (double)c->zx, (double)c->yz, (double)c->zz);
+            if (memcmp(&equivalent[i], &mises, sizeof mises)) fail_msg("von Mises of cell %lld: %a, %a", (long long)i, equivalent[i], mises);
+        }
+    }
+    free(host);
+    free(von_mises);
+    free(device);
+    free(equivalent);
+}
+
+/* Observed at steps 0, 3 and 7; between them no stress is asked for, after step 3 it must not matter that it was. */
 static void run(enum lattice_scheme scheme, bool one_lane, int run_length)
 {
     struct link_material material[2];
@@ -111,6 +138,7 @@ static void run(enum lattice_scheme scheme, bool one_lane, int run_length)
         if (!observed) continue;
         host_observe(h, seen);
         compare(l, seen);
+        compare_stress(l, h, seen);
     }
     free(seen);
     host_free(h);

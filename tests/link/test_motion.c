@@ -2,7 +2,7 @@
 #include "body.h"
 
 static struct body body, other;
-static const struct quat Q = {0.1, {0.7, -0.5, 0.5}}; /* 169 degrees */
+static const struct quat Q = {.w = 0.1, .v = {0.7, -0.5, 0.5}}; /* 169 degrees */
 
 static int with_hole(int x, int y, int z)
 {

@@ -113,7 +113,7 @@ static void step_rkn4(struct top *t, double dt, enum update update)
 
 static struct top tumble(enum update update, int steps)
 {
-    struct top t = {{1, {0, 0, 0}}, {1, (preal)-0.7, (preal)0.5}};
+    struct top t = {{.w = 1}, {1, (preal)-0.7, (preal)0.5}};
     for (int k = 0; k < steps; k++) (update <= RK4_WRONG ? step_rk4 : step_rkn4)(&t, 2.0 / steps, update);
     return t;
 }
@@ -126,9 +126,9 @@ static struct top reference(void)
     const double dt = 2.0 / steps;
     struct top t = tumble(RK4, 0);
     for (int k = 0; k < steps; k++) {
-        struct top at = t, sum = {{0, {0, 0, 0}}, {0, 0, 0}};
+        struct top at = t, sum = {0};
         for (int stage = 0; stage < 4; stage++) {
-            struct quat half = {0, p3_scale((preal)0.5, at.w)}, d = quat_times(half, at.q);
+            struct quat half = {.v = p3_scale((preal)0.5, at.w)}, d = quat_times(half, at.q);
             pvec3 dw = pull(at.q);
             preal on = (preal)(ahead[stage] * dt), weigh = (preal)weight[stage];
             sum.q.w += weigh * d.w;

@@ -1,0 +1,25 @@
+/* Energies and momenta of a lattice in its observed state (lattice.h), over all ranks, with the same bits on any number of them. Needs double
+ * precision on the device. */
+#ifndef DEMOCLES_LATTICE_ENERGY_H
+#define DEMOCLES_LATTICE_ENERGY_H
+
+#include "lattice.h"
+
+/* NaN: not known, because the device has no double precision, or because some term was NaN or beyond measure (kernels/sums.h). */
+struct lattice_energy {
+    double kinetic, rotational; /* [J] */
+    double gravity;             /* [J], 0 where cells began */
+    double elastic;             /* [J]: links, volumes, and the stretched halves at faces with a traction */
+    double momentum[3];         /* [kg m/s] */
+    double angular[3];          /* [J s] about the origin of coordinates */
+};
+
+struct lattice_account;
+
+/* `cells`, those of the lattice, are borrowed during the call only; the lattice is for life. Collective. */
+struct lattice_account *lattice_energy_create(struct lattice *l, const struct lattice_cells *cells);
+void lattice_energy_free(struct lattice_account *a); /* NULL is fine */
+/* Collective. */
+void lattice_energy_now(struct lattice_account *a, struct lattice_energy *out);
+
+#endif
