@@ -127,9 +127,14 @@ class Colours:
         """viridis without its darkest part, in which spheres would lose their shading."""
         return matplotlib.colors.ListedColormap(plt.get_cmap("viridis")(numpy.linspace(0.16, 1, self.levels)))
 
-    def label(self):
-        name = self.name.replace("_", " ")
-        return f"{name} [{self.unit}]" if self.unit else name
+    def prefix(self):
+        """(1e6, "M") for millions of pascals; other units are written without."""
+        large = max(abs(self.low), abs(self.high))
+        return next(((f, p) for f, p in ((1e9, "G"), (1e6, "M"), (1e3, "k")) if self.unit == "Pa" and large >= f), (1, ""))
+
+    def label(self, prefix=""):
+        name = {"von_mises": "von Mises stress"}.get(self.name, self.name.replace("_", " "))
+        return f"{name} [{prefix}{self.unit}]" if self.unit else name
 
 
 def magnification(samples):
@@ -205,9 +210,10 @@ class Layout:
 
     def colour_bar(self, colours):
         axis = self.figure.add_axes((0.3, 0.082, 0.4, 0.02))
-        norm = matplotlib.colors.Normalize(colours.low, colours.high)
+        factor, prefix = colours.prefix()
+        norm = matplotlib.colors.Normalize(colours.low / factor, colours.high / factor)
         bar = self.figure.colorbar(matplotlib.cm.ScalarMappable(norm, colours.map()), cax=axis, orientation="horizontal")
-        bar.set_label(colours.label(), size=self.text)
+        bar.set_label(colours.label(prefix), size=self.text)
         if colours.levels < 256:
             bar.set_ticks(range(math.ceil(colours.low), math.floor(colours.high) + 1, max(1, colours.levels // 10)))
         bar.ax.tick_params(labelsize=0.9 * self.text)

@@ -133,6 +133,14 @@ class Drawing(unittest.TestCase):
             self.assertGreater(up[2], 0.9)
             self.assertGreater(right[1 - thin], 0.9)  # from -y or from +x: the other axis points to the right
 
+    def test_flat_things_are_seen_from_above_a_corner(self):
+        """The longer side points to the right, the corner of lowest x and y, or of largest x and lowest y, to the eye."""
+        for size, along, nearest in (((1, 1, 0.1), 0, (-1, -1)), ((1, 2, 0.1), 1, (1, -1))):
+            right, up, back = render_view.view_axes(numpy.zeros(3), numpy.array(size), None)
+            self.assertGreater(right[along], 0.9)
+            self.assertGreater(up[2], 0.7)
+            self.assertTrue(all(b * n > 0.3 for b, n in zip(back, nearest)))
+
 
 class Folder(unittest.TestCase):
     @classmethod
