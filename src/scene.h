@@ -174,7 +174,7 @@ struct scene_partition {
     double threshold; /* imbalance U above which a due re-cut is made */
 };
 
-enum measure_kind { MEASURE_COUNT, MEASURE_ENERGY, MEASURE_MOMENTUM, MEASURE_WALL_FORCE, MEASURE_PROBE, MEASURE_STRESS_MAX };
+enum measure_kind { MEASURE_COUNT, MEASURE_ENERGY, MEASURE_MOMENTUM, MEASURE_WALL_FORCE, MEASURE_PROBE, MEASURE_STRESS_MAX, MEASURE_BROKEN };
 struct measure {
     char *name;
     double every; /* [s] */

@@ -321,6 +321,8 @@ SPHERE_KEYS("boundaries[].where", boundary, where., AT_MOST_ONE),
     .text = "what is written of it"},
 {"measure[].stress_max", KEY_CHOICE, ONE_OF, .only = "lattice", .words = "von_mises", .mark = IS(measure, kind, MEASURE_STRESS_MAX),
     .text = "largest of all cells"},
+{"measure[].broken", KEY_CHOICE, ONE_OF, .only = "lattice", .words = "all", .mark = IS(measure, kind, MEASURE_BROKEN),
+    .text = "links broken so far, by mode"},
 };
 /* clang-format on */
 
