@@ -6,6 +6,8 @@
 #include "fail.h"
 #include "lattice_places.h"
 
+_Static_assert((int)CRITERION_SUM == BREAK_SUM && (int)CRITERION_LARGEST == BREAK_LARGEST && (int)CRITERION_STRESS == BREAK_STRESS, "scene and law");
+
 static real *reals(double *value, int64_t n)
 {
     real *r = fail_alloc((size_t)n * sizeof *r);
