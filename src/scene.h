@@ -99,6 +99,8 @@ struct body {
     struct region shape;
     struct region *minus; /* [n_minus] holes */
     int n_minus;
+    struct region *crack; /* [n_crack] links whose middle is inside are not there */
+    int n_crack;
     double velocity[3];         /* at time 0 [m/s] ... */
     double angular_velocity[3]; /* ... and about the middle of its cells [rad/s] */
     int line, column;           /* of its entry in the scene file */
