@@ -97,9 +97,13 @@ static void print_time(const struct scene *scene, const struct walls *walls, con
 
 void check_output(const struct scene *scene)
 {
-    const struct output *output = &scene->output;
+    double frame = scene->output.every, checkpoint = scene->output.checkpoint_every;
+    double every = frame > 0 && checkpoint > 0 ? fmin(frame, checkpoint) : fmax(frame, checkpoint);
     printf("\noutput: frames at the start, at the end");
-    if (output->every > 0) printf(" and every %g s, %.0f in all", output->every, floor(scene->time.end / output->every * (1 - 1e-9)) + 2);
+    if (every > 0) {
+        every = fmax(every, scene->time.step); /* no more than one in a step */
+        printf(" and every %g s, %.0f in all", every, floor(scene->time.end / every * (1 - 1e-9)) + 2);
+    }
     printf("\n");
     for (int k = 0; k < scene->n_measure; k++) printf("    %s.csv every %g s\n", scene->measure[k].name, scene->measure[k].every);
 }

@@ -148,6 +148,7 @@ static bool chosen(const struct device_entry *e, const char *choice)
     if (!choice) return true;
     const char *colon = strchr(choice, ':');
     size_t n = colon ? (size_t)(colon - choice) : strlen(choice);
+    if (!colon && strspn(choice, "0123456789") < n && matches(choice, n, e->device_index, e->info.name)) return true; /* a device's name alone */
     /* pocl calls itself so in its version only. */
     if (!matches(choice, n, e->platform_index, e->info.platform_name) && !matches(choice, n, e->platform_index, e->info.platform_version))
         return false;

@@ -31,7 +31,7 @@ static const struct option {
     [DIRECTORY] = {"-o", "DIR", "folder of the results [out/<name of the scene>]", RUN},
     [SET] = {"--set", "KEY=VALUE", "change a key of the scene, as time.end=1s; may be given again", RUN | CHECK},
     [FORCE] = {"--force", NULL, "replace earlier results in DIR", RUN},
-    [DEVICE] = {"--device", "PLATFORM:DEVICE", "indices or parts of names, as `democles devices` lists them [the best]", RUN},
+    [DEVICE] = {"--device", "PLATFORM:DEVICE", "indices or parts of names, as `democles devices` lists them; or a part of one name [the best]", RUN},
     [PRECISION] = {"--precision", "P", "double, mixed or single [the scene's]", RUN | CHECK},
     [STEPS] = {"--steps", "N", "end after step N, counted from the scene's start", RUN},
     [MAX_TIME] = {"--max-time", "1h30m", "stop after this time on the clock, with exit code 75", RUN},
