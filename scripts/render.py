@@ -42,7 +42,8 @@ def arguments():
     parser.add_argument("--field", metavar="NAME", help="colour by this field; a vector by its magnitude (default: velocity)")
     parser.add_argument("--range", metavar="LOW,HIGH", type=numbers(2, ",", float, lambda v: v[0] < v[1], "two numbers, as 0,1.5"),
                         help="ends of the colour bar (default: from the frames)")
-    parser.add_argument("--warp", metavar="FACTOR", type=float, help="magnify the displacements of a solid (default: to a twelfth of its size, if they are smaller)")
+    parser.add_argument("--warp", metavar="FACTOR", type=float,
+                        help="magnify the displacements of a solid (default: to a twelfth of its size, if they are smaller)")
     parser.add_argument("--view", metavar="X,Y,Z", type=numbers(3, ",", float, any, "a direction, as 1,0,0.5"),
                         help="direction from which to look (default: along the thinnest extent, slightly turned)")
     parser.add_argument("--size", metavar="WxH", type=numbers(2, "x", int, lambda v: min(v) >= 100, "pixels, as 1600x1000, at least 100 each"),
