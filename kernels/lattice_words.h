@@ -9,13 +9,17 @@
 #define WORD_OWNED 12
 #define WORD_KIND 16
 
+/* Fate of a cell: three bits for each upper face (x, y, z), the mode of law_break.h in which that link broke; the lower cell of a link has it. */
+#define FATE_MODE(fate, axis) ((fate) >> (3 * (axis)) & 7)
+
 #define LATTICE_X(with_turn) ((with_turn) ? 7 : 6)
 #define LATTICE_V 6
 
 /* Rows of tables of real. */
-#define LINK_WIDTH 8 /* kn ks kt kb r_i r_j h eta; row: kind of the lower cell times n_kind + kind of the higher */
-#define CELL_WIDTH 8 /* 1/m [1/kg], 1/J [1/(kg m2)], lambda [Pa], 1/(4 G) [1/Pa], 1/(2 h) [1/m], eta [s], alpha [1/s], h^3 [m3]; row: kind */
-#define KICK_WIDTH 4 /* f g of the kick that ends a step, f g of the one that begins the next; row: kind */
+#define LINK_WIDTH 8  /* kn ks kt kb r_i r_j h eta; row: kind of the lower cell times n_kind + kind of the higher */
+#define CELL_WIDTH 8  /* 1/m [1/kg], 1/J [1/(kg m2)], lambda [Pa], 1/(4 G) [1/Pa], 1/(2 h) [1/m], eta [s], alpha [1/s], h^3 [m3]; row: kind */
+#define BREAK_WIDTH 5 /* one over the limits of normal and shear force, bending and twisting moment, criterion (law_break.h); row: as links */
+#define KICK_WIDTH 4  /* f g of the kick that ends a step, f g of the one that begins the next; row: kind */
 /* Info of a run: its kind, and this if its cells have to be looked at one by one. */
 #define RUN_MIXED 256
 

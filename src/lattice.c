@@ -7,6 +7,7 @@
 #include "../kernels/lattice_words.h"
 #include "../partition/partition.h"
 #include "fail.h"
+#include "lattice_break.h"
 
 static const char *const sources[] = {"link_force.cl", "lattice_pack.cl", NULL};
 static const char *const sources_volume[] = {"link_force.cl", "link_volume.cl", "lattice_pack.cl", NULL};
@@ -111,8 +112,8 @@ struct launch *lattice_launch(struct lattice *l, const struct program *program, 
     int64_t plane = l->layout->plane;
     launch_set_batch(k, (size_t)l->layout->run);
     for (int i = 0; name[i]; i++) launch_bind_buffer_if(k, name[i], buffer[i]);
-    launch_bind_buffer(k, "list", list);
-    launch_set_long(k, "plane", plane);
+    if (list) launch_bind_buffer(k, "list", list);
+    launch_set_if(k, "plane", &plane, sizeof plane);
     launch_set_int_if(k, "n_run", l->layout->n_run);
     launch_set_int_if(k, "n_kind", l->n_kind);
     launch_set_int_if(k, "at_rows", 0);
@@ -175,7 +176,8 @@ struct lattice *lattice_create(struct device *dev, const struct comm *comm, cons
     if (l->scheme->first > 0) l->first = lattice_launch(l, l->program, "lattice_first", &l->force_list);
     if (comm->n_rank > 1)
         l->halo = lattice_halo_create(dev, comm, l->program, l->layout, &l->x, LATTICE_X(l->features.turn), lattice_x_bytes(l), &l->v,
-            l->features.link_damping ? LATTICE_V : 0, lattice_v_bytes(l));
+            l->features.link_damping ? LATTICE_V : 0, lattice_v_bytes(l), l->features.breakage ? &l->word : NULL);
+    if (l->features.breakage) l->breakage = lattice_break_create(l, cells);
     first_state(l, cells);
     return l;
 }
@@ -187,6 +189,7 @@ void lattice_free(struct lattice *l)
     struct buffer *all[] = {&l->x, &l->v, &l->sum_x, &l->sum_v, &l->pressure, &l->word, &l->info, &l->base, &l->force_list, &l->volume_list, &l->row,
         &l->link, &l->cell, &l->kick};
     lattice_halo_free(l->dev, l->halo);
+    lattice_break_free(l->breakage);
     lattice_rows_free(l);
     launch_free(l->force);
     launch_free(l->volume);

@@ -10,6 +10,8 @@
 
 enum { LATTICE_SLOTS = 16 };
 
+struct lattice_break;
+
 struct lattice {
     struct device *dev;
     const struct comm *comm;
@@ -22,7 +24,8 @@ struct lattice {
     struct lattice_halo *halo; /* NULL on one rank */
     struct program *program;
     struct launch *force, *volume, *first;
-    struct buffer x, v; /* sets of planes: kernels/lattice_state.h */
+    struct lattice_break *breakage; /* NULL where nothing breaks */
+    struct buffer x, v;             /* sets of planes: kernels/lattice_state.h */
     struct buffer sum_x, sum_v, pressure;
     struct buffer word, info, base, force_list, volume_list, row, link, cell, kick;
     int x_set, v_set;           /* where the state is that goes on */
@@ -66,7 +69,7 @@ size_t lattice_v_bytes(const struct lattice *l);
 /* Writes doubles as numbers of the device. */
 void lattice_put(struct lattice *l, struct buffer *buffer, bool is_float, const double *value, int64_t n);
 
-/* A kernel of a program of this lattice, bound to its tables and state; list: runs that it goes over. */
+/* A kernel of a program of this lattice, bound to its tables and state; list: runs that it goes over, NULL: it has none. */
 struct launch *lattice_launch(struct lattice *l, const struct program *program, const char *kernel, const struct buffer *list);
 /* Plane `number` of a buffer, of this rank's cells in the order of layout->gid; the caller frees. */
 double *lattice_read_plane(const struct lattice *l, const struct buffer *buffer, bool is_float, int64_t number);

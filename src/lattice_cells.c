@@ -186,6 +186,7 @@ struct lattice_cells *lattice_cells_create(const struct scene *scene, struct sce
     free(list.cell);
     if (errors->n == before) {
         link_cells(cells);
+        lattice_cracks_cut(scene, cells, errors);
         lattice_loads_create(scene, cells, errors);
     }
     if (errors->n == before) {

@@ -3,7 +3,8 @@
  *
  * A body is cut on a grid of edge `cell` whose origin is the low corner of the body's own bounding box. Bodies whose grids agree (same edge, offset a
  * whole number of cells to 1e-9 of it) share one, and there neighbouring cells are linked, of whichever body they are. A cell is there if its centre
- * is inside the shape, or on it to 1e-9 of the edge, and not so in `minus`; of two bodies the later one has it.
+ * is inside the shape, or on it to 1e-9 of the edge, and not so in `minus`; of two bodies the later one has it. A link is there unless its middle is
+ * in a crack of one of its two bodies.
  * Centre of a cell: origin + (at + 1/2) h. */
 #ifndef DEMOCLES_LATTICE_CELLS_H
 #define DEMOCLES_LATTICE_CELLS_H

@@ -26,6 +26,7 @@ struct lattice_features lattice_features_of(const struct lattice_cells *cells, c
     for (int a = 0; a < 3; a++) f.gravity |= fabs(o->gravity[a]) > 0;
     f.kinds = cells->n_kind > 1;
     f.rk = lattice_schemes_table(o->scheme)->is_rk;
+    f.breakage = o->strength != NULL;
     return f;
 }
 
@@ -36,7 +37,7 @@ static const struct {
     const char *name;
     size_t at;
 } feature_table[] = {FEATURE(turn), FEATURE(volume), FEATURE(shear_apart), FEATURE(twist_apart), FEATURE(link_damping), FEATURE(mass_damping),
-    FEATURE(fix), FEATURE(loads), FEATURE(gravity), FEATURE(kinds), FEATURE(rk), {NULL, 0}};
+    FEATURE(fix), FEATURE(loads), FEATURE(gravity), FEATURE(kinds), FEATURE(rk), FEATURE(breakage), {NULL, 0}};
 
 const char *lattice_features_name(int i)
 {
@@ -52,9 +53,9 @@ char *lattice_features_options(const struct lattice_features *f, int run)
 {
     return fail_format("-DREAL_IS_FLOAT=%d -DPOSITION_IS_FLOAT=%d -DWITH_TURN=%d -DWITH_VOLUME=%d -DWITH_SHEAR_APART=%d -DWITH_TWIST_APART=%d "
                        "-DWITH_LINK_DAMPING=%d -DWITH_MASS_DAMPING=%d -DWITH_FIX=%d -DWITH_LOADS=%d -DWITH_GRAVITY=%d -DWITH_KINDS=%d -DWITH_RK=%d "
-                       "-DBATCH=%d -DBATCH_WIDTH=%d",
+                       "-DWITH_BREAK=%d -DBATCH=%d -DBATCH_WIDTH=%d",
         f->real_is_float, f->position_is_float, f->turn, f->volume, f->shear_apart, f->twist_apart, f->link_damping, f->mass_damping, f->fix,
-        f->loads, f->gravity, f->kinds, f->rk, run, f->real_is_float && f->position_is_float ? 16 : 8);
+        f->loads, f->gravity, f->kinds, f->rk, f->breakage, run, f->real_is_float && f->position_is_float ? 16 : 8);
 }
 
 double *lattice_features_links(const struct lattice_cells *cells, const struct lattice_options *o)
@@ -67,6 +68,20 @@ double *lattice_features_links(const struct lattice_cells *cells, const struct l
             struct link_stiffness k = link_constants_between(o->set, o->material[cells->kind[i].material], o->material[cells->kind[j].material], h);
             const double value[LINK_WIDTH] = {k.kn, k.ks, k.kt, k.kb, k.r_i, k.r_j, h, k.eta};
             for (int a = 0; a < LINK_WIDTH; a++) row[a] = value[a];
+        }
+    return table;
+}
+
+double *lattice_features_limits(const struct lattice_cells *cells, const struct lattice_options *o)
+{
+    int n = cells->n_kind;
+    double *table = fail_alloc((size_t)(n * n) * BREAK_WIDTH * sizeof *table), *row = table;
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++, row += BREAK_WIDTH) {
+            struct link_strength s = link_constants_weaker(o->strength[i], o->strength[j]);
+            struct link_limits k = link_constants_limits(s, cells->grid[cells->kind[i].grid].h);
+            const double value[BREAK_WIDTH] = {k.normal, k.shear, k.bend, k.twist, s.criterion};
+            for (int a = 0; a < BREAK_WIDTH; a++) row[a] = value[a];
         }
     return table;
 }

@@ -20,7 +20,8 @@ struct lattice_options {
     const struct link_material *material; /* [n_material], with damping of links; borrowed for the lattice's life */
     const double *alpha;                  /* [n_material] mass-proportional damping [1/s]; NULL: none */
     int n_material;
-    int n_row; /* rows of loads; up to 1: no loads */
+    const struct link_strength *strength; /* [n_kind of the cells]; NULL: nothing breaks */
+    int n_row;                            /* rows of loads; up to 1: no loads */
     lattice_rows_at *rows_at;
     void *context;
     int run; /* length of runs: 16, 32 or 64; 0: what suits the body */
@@ -35,6 +36,7 @@ struct lattice_features {
     bool fix, loads, gravity;
     bool kinds; /* more than one */
     bool rk;    /* stages of a Runge-Kutta scheme */
+    bool breakage;
 };
 
 struct lattice_features lattice_features_of(const struct lattice_cells *cells, const struct lattice_options *o);
@@ -45,6 +47,8 @@ bool lattice_features_value(const struct lattice_features *features, int i);
 char *lattice_features_options(const struct lattice_features *f, int run);
 /* Tables of kernels/lattice_state.h; the caller frees: links [n_kind][n_kind][LINK_WIDTH], cells [n_kind][CELL_WIDTH]. */
 double *lattice_features_links(const struct lattice_cells *cells, const struct lattice_options *o);
+/* Limits [n_kind][n_kind][BREAK_WIDTH]; options have strengths. */
+double *lattice_features_limits(const struct lattice_cells *cells, const struct lattice_options *o);
 double *lattice_features_cells(const struct lattice_cells *cells, const struct lattice_options *o);
 /* Kicks [n + 2][n_kind][KICK_WIDTH] of a splitting: its evaluations; the first that ends a step only; the first that begins one only. */
 double *lattice_features_kicks(const struct lattice_cells *cells, const struct lattice_options *o);

@@ -9,6 +9,17 @@
 
 enum { CORNERS = 8, FIELDS = 16 };
 
+static void read_breakage(const struct sim *s, struct lattice_state *t)
+{
+    size_t n = (size_t)t->n;
+    t->broken = fail_alloc(n * sizeof *t->broken);
+    if (!s->solid->lattice->breakage) return;
+    t->links = fail_alloc(n * sizeof *t->links);
+    t->fate = fail_alloc(n * sizeof *t->fate);
+    lattice_break_read(s->solid->lattice->breakage, t->links, t->fate);
+    for (int64_t i = 0; i < t->n; i++) t->broken[i] = __builtin_popcount(s->solid->cells->bits[t->gid[i]] & CELL_LINKS & ~t->links[i]);
+}
+
 struct lattice_state *lattice_state_create(const struct sim *s)
 {
     const struct lattice *l = s->solid->lattice;
@@ -37,14 +48,15 @@ struct lattice_state *lattice_state_create(const struct sim *s)
         t->von_mises = fail_alloc(n * sizeof *t->von_mises);
         lattice_stress_run(s->solid->stress, t->stress, t->von_mises);
     }
+    read_breakage(s, t);
     return t;
 }
 
 void lattice_state_free(struct lattice_state *t)
 {
     if (!t) return;
-    void *own[] = {t->centre, t->u, t->turn, t->v, t->w, t->stress, t->von_mises, t};
-    for (int k = 0; k < 8; k++) free(own[k]);
+    void *own[] = {t->centre, t->u, t->turn, t->v, t->w, t->stress, t->von_mises, t->links, t->fate, t->broken, t};
+    for (size_t k = 0; k < sizeof own / sizeof *own; k++) free(own[k]);
 }
 
 static void cross(const double a[3], const double b[3], double out[3])
@@ -119,6 +131,7 @@ static void shown_fields(const struct sim *s, const struct lattice_state *t, str
         else if (!strcmp(name, "id")) add(f, "id", "1", "global id", COLUMN_I64, 1, t->gid);
         else if (!strcmp(name, "stress")) add(f, "stress", "Pa", "stress in the world's axes, rows of the tensor", COLUMN_F64, 9, t->stress);
         else if (!strcmp(name, "von_mises")) add(f, "von_mises", "Pa", "von Mises' equivalent stress", COLUMN_F64, 1, t->von_mises);
+        else if (!strcmp(name, "broken")) add(f, "broken", "1", "links that the cell has lost", COLUMN_I32, 1, t->broken);
         else {
             f->own[f->n_own] = integers(s, t, name);
             add(f, name, "1", "index in the scene; owner: rank", COLUMN_I32, 1, f->own[f->n_own++]);
@@ -141,6 +154,11 @@ void lattice_method_frame(struct sim *s, int64_t index)
     add(&state, "rotation", t->turn_width == 4 ? "1" : "rad", "quaternion w, x, y, z, or a small rotation and 0", COLUMN_F64, 4, t->turn);
     add(&state, "velocity", "m/s", "velocity of the centre", COLUMN_F64, 3, t->v);
     add(&state, "angular_velocity", "rad/s", "angular velocity", COLUMN_F64, 3, t->w);
+    if (t->links) {
+        add(&state, "links", "1", "links left, a bit for each of -x, +x, -y, +y, -z, +z", COLUMN_I32, 1, t->links);
+        add(&state, "fate", "1", "how links at upper faces broke, three bits for each of x, y, z: tension 1, shear 2, bending 3, twist 4", COLUMN_I32,
+            1, t->fate);
+    }
     struct table table = {"cells", t->n, state.column, state.n};
     struct frame_scalar scalar = {"dt", COLUMN_F64, s->dt, 0};
     struct frame frame = {.step = s->step,

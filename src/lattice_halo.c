@@ -5,7 +5,7 @@
 #include "fail.h"
 
 static void set_record(struct launch *launch, const struct lattice_layout *layout, const struct buffer *x, int n_x, size_t x_bytes,
-    const struct buffer *v, int n_v, size_t v_bytes)
+    const struct buffer *v, int n_v, size_t v_bytes, const struct buffer *word)
 {
     launch_set_long(launch, "plane", layout->plane);
     launch_bind_buffer(launch, "x", x);
@@ -14,6 +14,7 @@ static void set_record(struct launch *launch, const struct lattice_layout *layou
     launch_bind_buffer(launch, "v", v);
     launch_set_int(launch, "n_v", n_v);
     launch_set_int(launch, "v_words", (int)(v_bytes / 4));
+    if (word) launch_bind_buffer(launch, "word", word);
 }
 
 static void upload(struct device *dev, struct buffer *buffer, const char *name, const int *data, int64_t n)
@@ -24,13 +25,14 @@ static void upload(struct device *dev, struct buffer *buffer, const char *name, 
 }
 
 struct lattice_halo *lattice_halo_create(struct device *dev, const struct comm *comm, const struct program *program,
-    const struct lattice_layout *layout, const struct buffer *x, int n_x, size_t x_bytes, const struct buffer *v, int n_v, size_t v_bytes)
+    const struct lattice_layout *layout, const struct buffer *x, int n_x, size_t x_bytes, const struct buffer *v, int n_v, size_t v_bytes,
+    const struct buffer *word)
 {
     struct lattice_halo *h = fail_alloc(sizeof *h);
     h->comm = comm;
     h->n_send = layout->n_send;
     h->n_recv = layout->n_recv;
-    h->record = (size_t)n_x * x_bytes + (size_t)n_v * v_bytes;
+    h->record = (size_t)n_x * x_bytes + (size_t)n_v * v_bytes + (word ? sizeof(int32_t) : 0);
     upload(dev, &h->send, "lattice send", layout->send, h->n_send);
     upload(dev, &h->recv, "lattice receive", layout->recv, h->n_recv);
     buffer_init(&h->packed, "lattice packed");
@@ -43,8 +45,8 @@ struct lattice_halo *lattice_halo_create(struct device *dev, const struct comm *
     buffer_reserve_staging(dev, &h->recv_staging, (size_t)h->n_recv * h->record);
     h->pack = launch_create(program, "lattice_pack");
     h->unpack = launch_create(program, "lattice_unpack");
-    set_record(h->pack, layout, x, n_x, x_bytes, v, n_v, v_bytes);
-    set_record(h->unpack, layout, x, n_x, x_bytes, v, n_v, v_bytes);
+    set_record(h->pack, layout, x, n_x, x_bytes, v, n_v, v_bytes, word);
+    set_record(h->unpack, layout, x, n_x, x_bytes, v, n_v, v_bytes, word);
     launch_set_int(h->pack, "n", (int)h->n_send);
     launch_set_int(h->unpack, "n", (int)h->n_recv);
     launch_bind_buffer(h->pack, "index", &h->send);

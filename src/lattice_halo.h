@@ -18,9 +18,11 @@ struct lattice_halo {
     cl_event packed_event, read_event, written_event;
 };
 
-/* n_x, n_v: numbers of each cell that travel, of so many bytes each. x, v: the buffers that hold them. Collective. */
+/* n_x, n_v: numbers of each cell that travel, of so many bytes each. x, v: the buffers that hold them; word: that of the cells' words where links
+ * break, else NULL. Collective. */
 struct lattice_halo *lattice_halo_create(struct device *dev, const struct comm *comm, const struct program *program,
-    const struct lattice_layout *layout, const struct buffer *x, int n_x, size_t x_bytes, const struct buffer *v, int n_v, size_t v_bytes);
+    const struct lattice_layout *layout, const struct buffer *x, int n_x, size_t x_bytes, const struct buffer *v, int n_v, size_t v_bytes,
+    const struct buffer *word);
 void lattice_halo_free(struct device *dev, struct lattice_halo *h);
 
 /* Packs from the sets of planes that begin with numbers x_in and v_in; posts receives. */

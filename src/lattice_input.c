@@ -1,5 +1,6 @@
 #include "lattice_input.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,6 +12,21 @@ static void rows_at(void *context, double t, double from, double to, double *row
 {
     struct lattice_input *input = context;
     lattice_loads_at(input->loads, input->scene, t, from, to, rows);
+}
+
+/* What cells of a kind bear. */
+static struct link_strength strength_of(const struct scene *scene, const struct lattice_cells *cells, int kind)
+{
+    const struct material *m = &scene->material[cells->kind[kind].material];
+    struct link_strength s = {HUGE_VAL, HUGE_VAL, (int)m->criterion};
+    if (!m->has_strength) return s;
+    s.shear = m->shear;
+    s.tension = m->tension;
+    if (!(m->energy > 0)) return s;
+    /* by the pull alone: the link at a crack's tip also bends, and the sum of both would break it at 0.64 of the load (cases/notched_bar) */
+    s.criterion = CRITERION_LARGEST;
+    s.tension = link_constants_tension(lattice_frequency_material(m), m->energy, cells->grid[cells->kind[kind].grid].h, m->plane == PLANE_STRAIN);
+    return s;
 }
 
 struct lattice_input *lattice_input_create(const struct scene *scene, const struct lattice_cells *cells, double dt)
@@ -37,6 +53,11 @@ struct lattice_input *lattice_input_create(const struct scene *scene, const stru
         .n_row = cells->loads->n_row,
         .rows_at = rows_at,
         .context = input};
+    input->strength = fail_alloc((size_t)cells->n_kind * sizeof *input->strength);
+    for (int k = 0; k < cells->n_kind; k++) {
+        input->strength[k] = strength_of(scene, cells, k);
+        if (isfinite(input->strength[k].tension) || isfinite(input->strength[k].shear)) input->options.strength = input->strength;
+    }
     memcpy(input->options.gravity, scene->gravity, sizeof input->options.gravity);
     return input;
 }
@@ -46,5 +67,6 @@ void lattice_input_free(struct lattice_input *input)
     if (!input) return;
     free(input->material);
     free(input->alpha);
+    free(input->strength);
     free(input);
 }

@@ -10,6 +10,7 @@ struct lattice_input {
     struct lattice_options options;
     struct link_material *material; /* [scene.n_material] */
     double *alpha;                  /* [scene.n_material] [1/s] */
+    struct link_strength *strength; /* [cells.n_kind] */
     const struct scene *scene;
     struct lattice_loads *loads;
 };

@@ -13,6 +13,9 @@
 enum { RUN_COST = 6 };
 /* Planes begin this many cells beyond a multiple of 1024: aligned for any vector, and in different sets of a cache. */
 enum { PLANE_SHIFT = 80 };
+/* Cells in one layer of a tile, see order_runs. On 100^3 cells in double precision, pocl 3.1, AMD Zen 5 with 1 MiB per core: without tiles 48
+ * million cells/s, with 800 cells 50, with 1,600 cells 52, with 3,200 cells 50. */
+enum { TILE_CELLS = 1600 };
 enum { NOTHING, OWNED, FIRST_GHOST, SECOND_GHOST };
 
 struct build {
@@ -124,14 +127,44 @@ static void fill_info(struct build *b)
         if (l->info[r] < 0) l->info[r] = 0;
 }
 
-/* Runs with mark `yes`, first those without `late`. */
-static int *list(const struct lattice_layout *l, const bool *yes, const bool *late, int *n, int *n_first)
+static const struct lattice_place *tile_place; /* qsort passes no context */
+static int tile_rows;
+
+static int compare_tiles(const void *a, const void *b)
+{
+    int r = *(const int *)a, t = *(const int *)b;
+    const struct lattice_place *p = &tile_place[r], *q = &tile_place[t];
+    if (p->grid == q->grid && p->y / tile_rows != q->y / tile_rows) return p->y / tile_rows < q->y / tile_rows ? -1 : 1;
+    return r < t ? -1 : r > t; /* places are sorted by grid, z, y, x */
+}
+
+/* The runs of this rank in the order in which kernels take them: tiles of some rows along y, each through all layers along z, so that the three
+ * layers that the links of a row reach stay in a core's cache. */
+static int *order_runs(const struct build *b)
+{
+    const struct lattice_place *p = b->places->place;
+    int *order = fail_alloc((size_t)b->l->n_run * sizeof *order), n = 0, row = 0, longest = 1;
+    for (int r = 0; r < b->places->n_run; r++) {
+        row = r > 0 && p[r].grid == p[r - 1].grid && p[r].z == p[r - 1].z && p[r].y == p[r - 1].y ? row + 1 : 1;
+        if (row > longest) longest = row;
+        if (b->local[r]) order[n++] = r;
+    }
+    tile_place = p;
+    tile_rows = TILE_CELLS / (longest * b->places->run);
+    if (tile_rows < 1) tile_rows = 1;
+    qsort(order, (size_t)n, sizeof *order, compare_tiles);
+    for (int k = 0; k < n; k++) order[k] = b->local[order[k]];
+    return order;
+}
+
+/* Runs with mark `yes`, first those without `late`. order: all but the first and last, which are empty. */
+static int *list(const struct lattice_layout *l, const int *order, const bool *yes, const bool *late, int *n, int *n_first)
 {
     int *list = fail_alloc((size_t)l->n_run * sizeof *list);
     *n = 0;
     for (int pass = 0; pass < 2; pass++) {
-        for (int r = 0; r < l->n_run; r++)
-            if (yes[r] && late[r] == (pass == 1)) list[(*n)++] = r;
+        for (int k = 0; k < l->n_run - 2; k++)
+            if (yes[order[k]] && late[order[k]] == (pass == 1)) list[(*n)++] = order[k];
         if (pass == 0) *n_first = *n;
     }
     return list;
@@ -158,8 +191,10 @@ static void list_runs(struct build *b)
             }
             late_f[r] |= b->depth == 2 && pass == 1 && late_p[r];
         }
-    l->force = list(l, owned, late_f, &l->n_force, &l->n_force_interior);
-    l->volume = list(l, needed, late_p, &l->n_volume, &l->n_volume_interior);
+    int *order = order_runs(b);
+    l->force = list(l, order, owned, late_f, &l->n_force, &l->n_force_interior);
+    l->volume = list(l, order, needed, late_p, &l->n_volume, &l->n_volume_interior);
+    free(order);
     free(owned);
     free(needed);
     free(late_p);

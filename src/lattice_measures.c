@@ -14,6 +14,11 @@ int lattice_method_measure_columns(enum measure_kind kind, const struct series_c
     static const struct series_column momentum[] = {
         {"p_x", "N s"}, {"p_y", "N s"}, {"p_z", "N s"}, {"l_x", "N m s"}, {"l_y", "N m s"}, {"l_z", "N m s"}};
     static const struct series_column peak[] = {{"von_mises", "Pa"}, {"x", "m"}, {"y", "m"}, {"z", "m"}};
+    static const struct series_column broken[] = {{"tension", "1"}, {"shear", "1"}, {"bending", "1"}, {"twist", "1"}};
+    if (kind == MEASURE_BROKEN) {
+        *column = broken;
+        return LATTICE_BREAK_MODES;
+    }
     *column = kind == MEASURE_ENERGY ? energy : kind == MEASURE_MOMENTUM ? momentum : kind == MEASURE_STRESS_MAX ? peak : probe;
     return kind == MEASURE_ENERGY || kind == MEASURE_STRESS_MAX ? 4 : kind == MEASURE_MOMENTUM ? 6 : 12;
 }
@@ -65,13 +70,20 @@ static void measure_peak(struct sim *s, const struct lattice_state *t, double *v
     if (gid < INT64_MAX) lattice_cells_centre(s->solid->cells, gid, value + 1);
 }
 
+static void measure_broken(const struct sim *s, double *value)
+{
+    int64_t count[LATTICE_BREAK_MODES] = {0};
+    if (s->solid->lattice->breakage) lattice_break_count(s->solid->lattice->breakage, count);
+    for (int mode = 0; mode < LATTICE_BREAK_MODES; mode++) value[mode] = (double)count[mode];
+}
+
 void lattice_method_measure(struct sim *s, const bool *due, double (*value)[MEASURE_COLUMNS])
 {
     bool by_cell = false, by_energy = false;
     for (int i = 0; i < s->scene->n_measure; i++) {
         bool is_energy = s->scene->measure[i].kind == MEASURE_ENERGY || s->scene->measure[i].kind == MEASURE_MOMENTUM;
         by_energy |= due[i] && is_energy;
-        by_cell |= due[i] && !is_energy;
+        by_cell |= due[i] && !is_energy && s->scene->measure[i].kind != MEASURE_BROKEN;
     }
     struct lattice_energy e = {.kinetic = 0};
     if (by_energy) lattice_energy_now(s->solid->account, &e);
@@ -82,6 +94,7 @@ void lattice_method_measure(struct sim *s, const bool *due, double (*value)[MEAS
         if (!due[i]) continue;
         if (what->kind == MEASURE_ENERGY) memcpy(value[i], energy, sizeof energy);
         else if (what->kind == MEASURE_STRESS_MAX) measure_peak(s, t, value[i]);
+        else if (what->kind == MEASURE_BROKEN) measure_broken(s, value[i]);
         else if (what->kind == MEASURE_PROBE) measure_probe(s, what->at, t, value[i]);
         else {
             memcpy(value[i], e.momentum, sizeof e.momentum);

@@ -29,8 +29,6 @@ static bool wants_stress(const struct scene *scene)
 /* What the scene language knows and this program does not do yet. */
 static void refuse(const struct scene *scene, struct scene_errors *errors)
 {
-    if (is_listed(scene->output.field, scene->output.n_field, "broken"))
-        scene_errors_add(errors, "%s: output.fields: broken: links do not break in this version", scene->path);
     for (int m = 0; m < scene->n_measure; m++) {
         static const char *const later[] = {"rotation", "stress", "von_mises"};
         const struct measure *what = &scene->measure[m];
@@ -38,9 +36,6 @@ static void refuse(const struct scene *scene, struct scene_errors *errors)
             if (is_listed(what->field, what->n_field, later[k]))
                 scene_errors_add(errors, "%s:%d: measure '%s': a probe of %s is not in this version", scene->path, what->line, what->name, later[k]);
     }
-    for (int m = 0; m < scene->n_material; m++)
-        if (scene->material[m].has_strength)
-            scene_errors_add(errors, "%s: materials.%s.strength: links do not break in this version", scene->path, scene->material[m].name);
 }
 
 static void read(struct sim *s)
@@ -173,6 +168,17 @@ static void report_features(const struct sim *s, struct report *r)
     for (int i = 0; lattice_features_name(i); i++) report_integer(r, lattice_features_name(i), lattice_features_value(f, i));
 }
 
+/* Links broken so far, by mode. Collective. */
+static void report_broken(struct sim *s, struct report *r)
+{
+    int64_t count[LATTICE_BREAK_MODES];
+    if (!s->solid->lattice->breakage) return;
+    lattice_break_count(s->solid->lattice->breakage, count);
+    report_begin(r, "broken");
+    for (int mode = 0; mode < LATTICE_BREAK_MODES; mode++) report_integer(r, lattice_break_name(mode), count[mode]);
+    report_end(r);
+}
+
 static void report_energy(struct sim *s, struct report *r, bool observed)
 {
     struct lattice_energy now = s->solid->energy_start;
@@ -190,6 +196,7 @@ static void report_energy(struct sim *s, struct report *r, bool observed)
     }
     report_end(r);
     report_numbers(r, "momentum", now.momentum, 3);
+    report_broken(s, r);
 }
 
 static void report_kernels(const struct sim *s, struct report *r)

@@ -2,6 +2,7 @@
 #ifndef DEMOCLES_LATTICE_METHOD_H
 #define DEMOCLES_LATTICE_METHOD_H
 
+#include "lattice_break.h"
 #include "lattice_energy.h"
 #include "lattice_input.h"
 #include "lattice_relax.h"
@@ -25,6 +26,7 @@ struct lattice_state {
     const int64_t *gid;                                         /* borrowed */
     double (*centre)[3], (*u)[3], (*turn)[4], (*v)[3], (*w)[3]; /* [m], [m], see below, [m/s], [rad/s] */
     double (*stress)[9], *von_mises;                            /* [Pa]; NULL where the scene does not ask for them */
+    int32_t *links, *fate, *broken;                             /* lattice_break.h, NULL where nothing breaks; how many links it has lost */
     int turn_width;                                             /* 4: turn is a quaternion w, x, y, z; 3: a small rotation [rad], the fourth is 0 */
 };
 struct lattice_state *lattice_state_create(const struct sim *s); /* collective */

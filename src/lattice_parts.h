@@ -1,4 +1,4 @@
-/* What the files that make cells share. Private to src/lattice_{cells,cut,loads}.c. */
+/* What the files that make cells share. Private to src/lattice_{cells,cracks,cut,loads}.c. */
 #ifndef DEMOCLES_LATTICE_PARTS_H
 #define DEMOCLES_LATTICE_PARTS_H
 
@@ -39,6 +39,9 @@ void lattice_cut_append(struct lattice_cut *cut, struct lattice_list *list);
 /* scene.yaml:LINE:COLUMN: text */
 void lattice_fault(const struct scene *scene, struct scene_errors *errors, int line, int column, const char *format, ...)
     __attribute__((format(printf, 5, 6)));
+
+/* Links are known: takes out those in the bodies' cracks. */
+void lattice_cracks_cut(const struct scene *scene, struct lattice_cells *cells, struct scene_errors *errors);
 
 /* Fixed DOF and rows of loads into `cells`, whose links are known. */
 void lattice_loads_create(const struct scene *scene, struct lattice_cells *cells, struct scene_errors *errors);

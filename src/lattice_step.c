@@ -2,6 +2,8 @@
 #include "lattice.h"
 
 #include "../kernels/lattice_words.h"
+#include "lattice_break.h"
+#include "lattice_observed.h"
 
 /* First number of a set of planes. */
 static int64_t x_at(const struct lattice *l, int set)
@@ -48,6 +50,17 @@ static void evaluate(struct lattice *l, int x_in, int x_out, int v_in, int v_out
     run(l, l->force, n_force, c->n_force - n_force, NULL);
 }
 
+/* Breakage, from the state at the step's start, with the ghosts and pressures of the step's first evaluation where that is of this state. Links are
+ * gone with the step's end: all its evaluations see the same ones. */
+static void judge(struct lattice *l, int x_in, int v_in)
+{
+    if (l->breakage) lattice_break_judge(l->breakage, x_at(l, x_in), v_at(l, v_in));
+}
+static void part(struct lattice *l)
+{
+    if (l->breakage) lattice_break_part(l->breakage);
+}
+
 /* One evaluation of a splitting. k: row of the table of kicks; the first evaluation's drift is left out if only its first kick is meant. */
 static void split(struct lattice *l, int k, const struct lattice_op *op, double at, bool observe)
 {
@@ -70,6 +83,8 @@ static void split_step(struct lattice *l)
     const struct lattice_table *s = l->scheme;
     double at = s->first, dt = l->options.dt;
     if (s->first > 0) {
+        if (l->breakage) lattice_observed_refresh(l, true);
+        judge(l, l->x_set, l->v_set);
         double t = (double)l->step * dt;
         lattice_rows_send(l, t, t, t + s->first * dt);
         launch_set_real(l->first, "drift", s->first * dt);
@@ -79,9 +94,12 @@ static void split_step(struct lattice *l)
     }
     for (int k = 0; k < s->n; k++) {
         bool begin_only = k == 0 && s->ends_with_kick && !l->started;
+        int x_in = l->x_set, v_in = l->v_set;
         split(l, begin_only ? s->n + 1 : k, &s->op[k], at, false);
+        if (k == 0 && s->ends_with_kick) judge(l, x_in, v_in);
         at += s->op[k].drift;
     }
+    part(l);
     l->started = true;
     l->x_observed = l->x_set;
     l->v_observed = l->v_set;
@@ -107,7 +125,9 @@ static void rk_step(struct lattice *l)
         launch_set_int(l->force, "is_last", k == s->n - 1);
         lattice_rows_send(l, t, t, t);
         evaluate(l, in, out, in, out);
+        if (k == 0) judge(l, in, in);
     }
+    part(l);
 }
 
 void lattice_advance(struct lattice *l, bool observe)

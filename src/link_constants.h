@@ -32,6 +32,7 @@ struct link_stiffness {
 /* What a material bears; infinity: anything. */
 struct link_strength {
     double tension, shear; /* sigma_c, tau_c [Pa] */
+    int criterion;         /* BREAK_* of kernels/law_break.h */
 };
 
 /* One over what a link bears, for kernels/law_break.h; 0: anything. */
@@ -59,7 +60,7 @@ bool link_constants_twist_apart(struct link_stiffness k);
 double link_constants_mass(struct link_material m, double h);
 double link_constants_inertia(struct link_material m, double h);
 
-/* Of a link: the weaker of both. */
+/* Of a link: the weaker of both, stress by stress, and the criterion of that with the weaker tension (then shear, then of the smaller number). */
 struct link_strength link_constants_weaker(struct link_strength i, struct link_strength j);
 /* Stresses at the edge of the face: f_n/h^2 + 6 mom_b/h^3 against sigma_c, f_s/h^2 + 3 mom_t/h^3 (polar moment h^4/6) against tau_c. */
 struct link_limits link_constants_limits(struct link_strength strength, double h);

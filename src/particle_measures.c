@@ -25,7 +25,8 @@ int particle_measure_columns(enum measure_kind kind, const struct series_column 
     case MEASURE_MOMENTUM: *column = momentum; return 6;
     case MEASURE_WALL_FORCE: *column = wall; return 4;
     case MEASURE_PROBE:
-    case MEASURE_STRESS_MAX: break; /* of method lattice */
+    case MEASURE_STRESS_MAX:
+    case MEASURE_BROKEN: break; /* of method lattice */
     }
     *column = probe;
     return 9;
@@ -141,7 +142,8 @@ void particle_measure(struct sim *s, const bool *due, double (*value)[MEASURE_CO
         case MEASURE_PROBE: measure_probe(s, what->element, h, value[i]); break;
         case MEASURE_ENERGY:
         case MEASURE_MOMENTUM: measure_energy(s, what->kind, &energy, value[i]); break;
-        case MEASURE_STRESS_MAX: break; /* of method lattice */
+        case MEASURE_STRESS_MAX:
+        case MEASURE_BROKEN: break; /* of method lattice */
         }
     }
     particles_host_free(h);

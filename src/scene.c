@@ -18,6 +18,7 @@ static void free_bodies(struct scene *scene)
         struct body *body = &scene->body[k];
         for (int m = 0; m < body->n_minus; m++) free(body->minus[m].stl);
         free(body->minus);
+        free(body->crack);
         free(body->shape.stl);
         free(body->name);
     }

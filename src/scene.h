@@ -99,6 +99,8 @@ struct body {
     struct region shape;
     struct region *minus; /* [n_minus] holes */
     int n_minus;
+    struct region *crack; /* [n_crack] links whose middle is inside are not there */
+    int n_crack;
     double velocity[3];         /* at time 0 [m/s] ... */
     double angular_velocity[3]; /* ... and about the middle of its cells [rad/s] */
     int line, column;           /* of its entry in the scene file */
@@ -174,7 +176,7 @@ struct scene_partition {
     double threshold; /* imbalance U above which a due re-cut is made */
 };
 
-enum measure_kind { MEASURE_COUNT, MEASURE_ENERGY, MEASURE_MOMENTUM, MEASURE_WALL_FORCE, MEASURE_PROBE, MEASURE_STRESS_MAX };
+enum measure_kind { MEASURE_COUNT, MEASURE_ENERGY, MEASURE_MOMENTUM, MEASURE_WALL_FORCE, MEASURE_PROBE, MEASURE_STRESS_MAX, MEASURE_BROKEN };
 struct measure {
     char *name;
     double every; /* [s] */

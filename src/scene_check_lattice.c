@@ -54,6 +54,7 @@ static void check_bodies(struct scene_reader *reader)
         const struct body *body = &reader->scene->body[k];
         scene_check_region(reader, fail_format("bodies[%d].shape", k), &body->shape, false);
         for (int m = 0; m < body->n_minus; m++) scene_check_region(reader, fail_format("bodies[%d].minus[%d]", k, m), &body->minus[m], false);
+        for (int c = 0; c < body->n_crack; c++) scene_check_region(reader, fail_format("bodies[%d].cracks[%d]", k, c), &body->crack[c], true);
     }
 }
 

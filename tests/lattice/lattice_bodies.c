@@ -100,3 +100,21 @@ void bodies_shake(struct lattice_cells *c, double v, double w)
             else c->w[i][a - 3] = w * r;
         }
 }
+
+struct lattice_motion bodies_motion(int64_t n)
+{
+    size_t s = (size_t)n;
+    struct lattice_motion m = {fail_alloc(s * sizeof *m.u), fail_alloc(s * sizeof *m.theta), fail_alloc(s * sizeof *m.q), fail_alloc(s * sizeof *m.v),
+        fail_alloc(s * sizeof *m.w)};
+    for (int64_t i = 0; i < n; i++) m.q[i][0] = 1;
+    return m;
+}
+
+void bodies_motion_free(struct lattice_motion *m)
+{
+    free(m->u);
+    free(m->theta);
+    free(m->q);
+    free(m->v);
+    free(m->w);
+}

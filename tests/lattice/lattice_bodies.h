@@ -22,4 +22,8 @@ void bodies_free(struct lattice_cells *c);
 /* Random velocities of that size; fixed DOF 0. */
 void bodies_shake(struct lattice_cells *c, double v, double w);
 
+/* Room for the motion of n cells: at rest in place. */
+struct lattice_motion bodies_motion(int64_t n);
+void bodies_motion_free(struct lattice_motion *m);
+
 #endif

@@ -6,6 +6,8 @@
 #include "fail.h"
 #include "lattice_places.h"
 
+_Static_assert((int)CRITERION_SUM == BREAK_SUM && (int)CRITERION_LARGEST == BREAK_LARGEST && (int)CRITERION_STRESS == BREAK_STRESS, "scene and law");
+
 static real *reals(double *value, int64_t n)
 {
     real *r = fail_alloc((size_t)n * sizeof *r);
@@ -30,15 +32,19 @@ struct host *host_create(const struct lattice_cells *cells, const struct lattice
     h->start = fail_alloc(n * sizeof *h->start);
     h->sums = fail_alloc(n * sizeof *h->sums);
     h->p = fail_alloc(n * sizeof *h->p);
+    h->links = fail_alloc(n * sizeof *h->links);
+    h->fate = fail_alloc(n * sizeof *h->fate);
     h->link = reals(lattice_features_links(cells, options), (int64_t)k * k * LINK_WIDTH);
     h->cell = reals(lattice_features_cells(cells, options), (int64_t)k * CELL_WIDTH);
     if (!h->scheme->is_rk) h->kick = reals(lattice_features_kicks(cells, options), (int64_t)(h->scheme->n + 2) * k * KICK_WIDTH);
+    if (options->strength) h->limit = reals(lattice_features_limits(cells, options), (int64_t)k * k * BREAK_WIDTH);
     if (WITH_LOADS) {
         h->rows = fail_alloc((size_t)options->n_row * LOAD_WIDTH * sizeof *h->rows);
         h->rows_double = fail_alloc((size_t)options->n_row * LOAD_WIDTH * sizeof *h->rows_double);
     }
     for (int64_t i = 0; i < h->n; i++) {
         h->now[i].q = quat_of(1, 0, 0, 0);
+        h->links[i] = cells->bits[i] & CELL_LINKS;
         if (cells->v) h->now[i].v = v3((real)cells->v[i][0], (real)cells->v[i][1], (real)cells->v[i][2]);
         if (cells->w) h->now[i].w = v3((real)cells->w[i][0], (real)cells->w[i][1], (real)cells->w[i][2]);
         for (int f = 0; f < 6; f++) h->neighbour[i][f] = cells->bits[i] & CELL_LINK(f) ? lattice_places_neighbour(places, cells, i, f) : -1;
@@ -49,7 +55,8 @@ struct host *host_create(const struct lattice_cells *cells, const struct lattice
 
 void host_free(struct host *h)
 {
-    void *all[] = {h->neighbour, h->now, h->next, h->start, h->sums, h->p, h->link, h->cell, h->kick, h->rows, h->rows_double};
+    void *all[] = {
+        h->neighbour, h->now, h->next, h->start, h->sums, h->p, h->links, h->fate, h->limit, h->link, h->cell, h->kick, h->rows, h->rows_double};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) free(all[k]);
     free(h);
 }
@@ -88,7 +95,7 @@ static void pressures(struct host *h)
             else sum += 0;
         }
         struct volume_constants c = {cell[2], cell[3], cell[4], cell[7]};
-        h->p[i] = c.lambda * volume_strain(sum, WITH_LOADS ? load_of(h, i).traction : (real)0, h->cells->bits[i] & 63, c);
+        h->p[i] = c.lambda * volume_strain(sum, WITH_LOADS ? load_of(h, i).traction : (real)0, h->links[i], c);
     }
 }
 
@@ -145,11 +152,40 @@ static void split(const struct host *h, int k, double drift, struct link_cell *t
     }
 }
 
+/* Every link once, in the state that h->now and h->p are of. */
+static void judge(struct host *h)
+{
+    for (int64_t i = 0; i < h->n && h->limit; i++)
+        for (int axis = 0; axis < 3; axis++) {
+            int64_t j = h->neighbour[i][2 * axis + 1];
+            struct break_limits limits;
+            if (j < 0) continue;
+            const real *row = h->limit + (h->cells->kind_of[i] * h->cells->n_kind + h->cells->kind_of[j]) * BREAK_WIDTH;
+            LATTICE_LIMITS(limits, row);
+            h->fate[i] |= lattice_fate(axis, h->now[i], h->now[j], constants(h, i, j), h->p[i], h->p[j], limits);
+        }
+}
+
+static void part(struct host *h)
+{
+    for (int64_t i = 0; i < h->n; i++)
+        for (int axis = 0; axis < 3; axis++) {
+            int64_t j = h->neighbour[i][2 * axis + 1];
+            if (!FATE_MODE(h->fate[i], axis) || j < 0) continue;
+            h->links[i] &= ~CELL_LINK(2 * axis + 1);
+            h->links[j] &= ~CELL_LINK(2 * axis);
+            h->neighbour[i][2 * axis + 1] = h->neighbour[j][2 * axis] = -1;
+        }
+}
+
 static void split_step(struct host *h)
 {
     double dt = h->options.dt, at = h->scheme->first;
     if (at > 0) {
         double t = (double)h->step * dt;
+        load_rows(h, t, t, t);
+        if (WITH_VOLUME) pressures(h);
+        judge(h);
         load_rows(h, t, t, t + at * dt);
         for (int64_t i = 0; i < h->n; i++) {
             if (WITH_LOADS) hold(h, i, &h->now[i], load_of(h, i).v, load_of(h, i).w);
@@ -161,10 +197,12 @@ static void split_step(struct host *h)
         double t = ((double)h->step + at) * dt;
         load_rows(h, t, t, t + op->drift * dt);
         if (WITH_VOLUME) pressures(h);
+        if (k == 0 && h->scheme->ends_with_kick) judge(h);
         split(h, k == 0 && h->scheme->ends_with_kick && !h->started ? h->scheme->n + 1 : k, op->drift * dt, h->next);
         memcpy(h->now, h->next, (size_t)h->n * sizeof *h->now);
         at += op->drift;
     }
+    part(h);
     h->started = true;
 }
 
@@ -185,6 +223,7 @@ static void rk_step(struct host *h)
         double t = ((double)h->step + h->scheme->rk[k].at) * h->options.dt;
         load_rows(h, t, t, t);
         if (WITH_VOLUME) pressures(h);
+        if (k == 0) judge(h);
         for (int64_t i = 0; i < h->n; i++) {
             const real alpha = h->cell[h->cells->kind_of[i] * CELL_WIDTH + 6];
             struct pull r = pull_of(h, i);
@@ -202,6 +241,7 @@ static void rk_step(struct host *h)
         }
         memcpy(h->now, h->next, (size_t)h->n * sizeof *h->now);
     }
+    part(h);
 }
 
 void host_step(struct host *h)
@@ -236,7 +276,7 @@ void host_stress(const struct host *h, struct link_cell *seen, bool extrapolate,
         for (int face = 0; face < 6; face++) *force[face] = share_of(&copy, i, face).force;
         if (WITH_LOADS) load = load_of(&copy, i);
         real edge = h->link[h->cells->kind_of[i] * (h->cells->n_kind + 1) * LINK_WIDTH + 6];
-        struct stress s = lattice_stress_of(f, seen[i], load, h->cells->bits[i] & 63, edge, extrapolate);
+        struct stress s = lattice_stress_of(f, seen[i], load, h->links[i], edge, extrapolate);
         stress[i] = lattice_stress_world(s, seen[i]);
         von_mises[i] = stress_von_mises(s);
     }

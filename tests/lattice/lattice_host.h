@@ -3,6 +3,7 @@
 #define LATTICE_HOST_H
 
 #include "lattice_bodies.h"
+#include "lattice_fate.h"
 #include "lattice_through.h"
 
 struct host {
@@ -14,7 +15,9 @@ struct host {
     struct link_cell *now, *next, *start; /* [n] */
     struct lattice_sums *sums;            /* [n] */
     real *p;                              /* [n] lambda Th */
+    int *links, *fate;                    /* [n] links left; kernels/lattice_words.h */
     real *link, *cell, *kick, *rows;      /* tables */
+    real *limit;                          /* NULL: nothing breaks */
     double *rows_double;
     int64_t step;
     bool started;

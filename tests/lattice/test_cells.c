@@ -196,6 +196,31 @@ static void initial_velocities(void **state)
     cut_free(cut);
 }
 
+/* A flat crack takes the links that cross it, also those to another body; a thick one all that lie in it. */
+static void cracks(void **state)
+{
+    struct cut cut =
+        cut_scene(*state, LATTICE(" - {name: c, material: a, cell: 0.1, shape: {" BOX(0, 0, 0, 0.4, 0.3,
+                              0.2) "},\n"
+                                   "    cracks: [{" BOX(0.2, 0, 0, 0.2, 0.2, 1) "}, {" BOX(0.3, 0.3, 0, 0.4, 0.3, 0.1) "}]}\n" BODY(
+                                       "d", "a", "0.1", BOX(0, 0.3, 0, 0.4, 0.4, 0.2)) " - {name: e, material: b, cell: 0.1, shape: {" BOX(0, 0, 0.2,
+                                       0.4, 0.4, 0.3) "},\n"
+                                                      "    cracks: [{cylinder: {from: [0.2, 0.2, 0.2], to: [0.2, 0.2, 0.3], radius: 0.08}}]}\n"));
+    const struct lattice_cells *c = cut.cells;
+    int64_t all = 3 * 4 * 3 + 4 * 3 * 3 + 4 * 4 * 2; /* 4 x 4 x 3 cells */
+    assert_int_equal(c->n, 48);
+    /* 2 x 2 of the plane x = 0.2, one of y = 0.3; in the cylinder 4 in its plane and 4 in its end face */
+    assert_int_equal(cut_links(c), all - 4 - 1 - 8);
+    for (int64_t i = 0; i < c->n; i++) {
+        const int32_t *at = c->at[i];
+        bool flat = at[0] == 1 && at[1] < 2 && at[2] < 2, round = at[0] == 1 && (at[1] == 1 || at[1] == 2) && at[2] == 2;
+        assert_int_equal((c->bits[i] & LINK_BIT(0, 1)) != 0, at[0] < 3 && !flat && !round);
+        bool joint = at[0] == 3 && at[1] == 2 && at[2] == 0, in = (at[0] == 1 || at[0] == 2) && at[1] == 1 && at[2] == 2;
+        assert_int_equal((c->bits[i] & LINK_BIT(1, 1)) != 0, at[1] < 3 && !joint && !in);
+    }
+    cut_free(cut);
+}
+
 static void messages(void **state)
 {
     struct fixture *f = *state;
@@ -207,6 +232,8 @@ static void messages(void **state)
         "scene.yaml:5:4: bodies[0]: 'void' has no cell: no centre of one is inside");
     cut_expect_one(f, LATTICE(CUBE(2) BODY("cover", "b", "1", BOX(0, 0, 0, 2, 2, 2))),
         "scene.yaml:5:4: bodies[0]: 'cube' has no cell: later bodies have taken them all");
+    cut_expect_one(f, LATTICE(" - {name: c, material: a, cell: 1, shape: {" BOX(0, 0, 0, 2, 2, 2) "}, cracks: [{" BOX(0, 0, 0, 0, 2, 2) "}]}\n"),
+        "scene.yaml:5:4: bodies[0].cracks[0]: no link is in it");
     fixture_write(f, "none.stl", "", 0);
     double corner[12 * 9];
     scratch_box((double[]){0, 0, 0}, (double[]){5, 4, 3}, corner);
@@ -229,6 +256,6 @@ static void messages(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {CUT_TEST(box), CUT_TEST(sphere), CUT_TEST(cylinder), CUT_TEST(surfaces), CUT_TEST(centres_on_surfaces),
-        CUT_TEST(two_bodies), CUT_TEST(two_grids), CUT_TEST(initial_velocities), CUT_TEST(messages)};
+        CUT_TEST(two_bodies), CUT_TEST(two_grids), CUT_TEST(cracks), CUT_TEST(initial_velocities), CUT_TEST(messages)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

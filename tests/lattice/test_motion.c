@@ -21,24 +21,6 @@ static void run(const struct lattice_cells *cells, const struct lattice_options 
     lattice_free(l);
 }
 
-static struct lattice_motion motion(int64_t n)
-{
-    size_t s = (size_t)n;
-    struct lattice_motion m = {fail_alloc(s * sizeof *m.u), fail_alloc(s * sizeof *m.theta), fail_alloc(s * sizeof *m.q), fail_alloc(s * sizeof *m.v),
-        fail_alloc(s * sizeof *m.w)};
-    for (int64_t i = 0; i < n; i++) m.q[i][0] = 1;
-    return m;
-}
-
-static void motion_free(struct lattice_motion *m)
-{
-    free(m->u);
-    free(m->theta);
-    free(m->q);
-    free(m->v);
-    free(m->w);
-}
-
 enum { N_CHAIN = 12, MODE = 3 };
 
 /* Largest error of mode MODE of a free chain along an axis, over its amplitude, after n steps of dt = z/w; frequency: of the reference [1 = w]. */
@@ -51,7 +33,7 @@ static double chain_error(enum lattice_scheme scheme, int axis, int n, double z,
     struct lattice_cells *cells = bodies_create(1, size, h, 1, bodies_block);
     double kn = steel.young * h, m = steel.density * h * h * h, w = 2 * sqrt(kn / m) * sin(MODE * M_PI / (2 * N_CHAIN)), worst = 0;
     struct lattice_options o = {.scheme = scheme, .dt = z / w, .turn = turn, .material = &steel, .n_material = 1, .n_row = 1};
-    struct lattice_motion s = motion(N_CHAIN);
+    struct lattice_motion s = bodies_motion(N_CHAIN);
     for (int i = 0; i < N_CHAIN; i++) s.u[i][axis] = amplitude * cos(M_PI * MODE * (i + 0.5) / N_CHAIN);
     run(cells, &o, n, &s);
     for (int i = 0; i < N_CHAIN; i++)
@@ -59,7 +41,7 @@ static double chain_error(enum lattice_scheme scheme, int axis, int n, double z,
             double exact = a == axis ? amplitude * cos(M_PI * MODE * (i + 0.5) / N_CHAIN) * cos(frequency * n * z) : 0;
             worst = fmax(worst, fabs(s.u[i][a] - exact) / amplitude);
         }
-    motion_free(&s);
+    bodies_motion_free(&s);
     bodies_free(cells);
     return worst;
 }
@@ -91,7 +73,7 @@ static void block(enum lattice_scheme scheme, double dt, int n, struct lattice_m
     const int size[3] = {3, 2, 2};
     struct lattice_cells *cells = bodies_create(1, size, 1, 1, bodies_block);
     struct lattice_options o = {.scheme = scheme, .dt = dt, .turn = true, .material = &soft, .n_material = 1, .n_row = 1};
-    *s = motion(cells->n);
+    *s = bodies_motion(cells->n);
     bodies_shake(cells, 0.025, 0.025);
     for (int64_t i = 0; i < cells->n; i++)
         for (int a = 0; a < 3; a++) {
@@ -126,10 +108,10 @@ static void block_orders(void **state)
         double a = block_distance(&coarse, &exact), b = block_distance(&fine, &exact), order = log2(a / b);
         printf("spinning block, %s: errors %.3g and %.3g, order %.3f\n", lattice_schemes_table(schemes[k])->name, a, b, order);
         assert_near(order, schemes[k] == LATTICE_LEAPFROG ? 2 : 4, 0.2);
-        motion_free(&coarse);
-        motion_free(&fine);
+        bodies_motion_free(&coarse);
+        bodies_motion_free(&fine);
     }
-    motion_free(&exact);
+    bodies_motion_free(&exact);
 }
 
 /* Row 1: a force, a torque by its lever, an acceleration, or a prescribed velocity. */
@@ -161,7 +143,7 @@ static void free_cell(void **state)
         struct lattice_cells *cells = bodies_create(1, size, h, 1, bodies_block);
         struct lattice_options o = {
             .scheme = schemes[k % 5], .dt = 0.01, .material = &m, .n_material = 1, .n_row = 2, .rows_at = rows_at, .context = &push};
-        struct lattice_motion s = motion(1);
+        struct lattice_motion s = bodies_motion(1);
         o.gravity[2] = -9.81;
         s.v[0][2] = 5;
         cells->row[0] = 1;
@@ -171,7 +153,7 @@ static void free_cell(void **state)
         assert_near(s.u[0][2], 5 * 2 - 9.81 * 2, 1e-11);
         assert_near(s.w[0][2], 2 * 2 / (mass * h * h / 6), 1e-12);
         assert_near(s.theta[0][2], 2 * 2 / (mass * h * h / 6), 1e-12);
-        motion_free(&s);
+        bodies_motion_free(&s);
         bodies_free(cells);
     }
 }
@@ -187,14 +169,14 @@ static void prescribed(void **state)
         struct lattice_cells *cells = bodies_create(1, size, 0.5, 1, bodies_block);
         struct lattice_options o = {
             .scheme = schemes[k], .dt = 0.01, .material = &m, .n_material = 1, .n_row = 2, .rows_at = rows_at, .context = &push};
-        struct lattice_motion s = motion(1);
+        struct lattice_motion s = bodies_motion(1);
         cells->row[0] = 1;
         cells->bits[0] |= CELL_FIX(0) | CELL_FIX(2);
         run(cells, &o, 200, &s);
         assert_near(s.u[0][0], 0, 0);
         assert_near(s.u[0][2], 1 - cos(2), lattice_schemes_table(schemes[k])->is_rk ? 1e-11 : 1e-13);
         assert_near(s.v[0][2], sin(2), schemes[k] == LATTICE_PEFRL ? 1e-3 : 1e-12); /* ends with a drift: its mean */
-        motion_free(&s);
+        bodies_motion_free(&s);
         bodies_free(cells);
     }
 }
@@ -210,9 +192,9 @@ static void mass_damping(void **state)
         const double alpha = 1.5;
         struct lattice_cells *cells = bodies_create(1, size, 0.5, 1, bodies_block);
         struct lattice_options o = {.scheme = schemes[k], .dt = 0.01, .material = &m, .n_material = 1, .n_row = 1, .alpha = &alpha};
-        struct lattice_motion s = motion(1);
+        struct lattice_motion s = bodies_motion(1);
         if (schemes[k] == LATTICE_RKN4) { /* takes no damping */
-            motion_free(&s);
+            bodies_motion_free(&s);
             bodies_free(cells);
             continue;
         }
@@ -225,7 +207,7 @@ static void mass_damping(void **state)
         assert_near(s.v[0][1], 2 * gone, 1e-14);
         assert_near(s.w[0][0], 3 * gone, 1e-14);
         assert_near(s.u[0][1], middle * 2 * (1 - exact) / alpha, schemes[k] == LATTICE_LEAPFROG ? 1e-13 : 1e-9);
-        motion_free(&s);
+        bodies_motion_free(&s);
         bodies_free(cells);
     }
 }
@@ -243,7 +225,7 @@ static void link_damping(void **state)
     for (int k = 0; k < 2; k++) {
         double worst = 0;
         struct lattice_options o = {.scheme = schemes[k], .dt = z / w, .material = &steel, .n_material = 1, .n_row = 1};
-        struct lattice_motion s = motion(N_CHAIN);
+        struct lattice_motion s = bodies_motion(N_CHAIN);
         for (int i = 0; i < N_CHAIN; i++) s.u[i][0] = amplitude * cos(M_PI * MODE * (i + 0.5) / N_CHAIN);
         run(cells, &o, n, &s);
         for (int i = 0; i < N_CHAIN; i++) {
@@ -252,7 +234,7 @@ static void link_damping(void **state)
         }
         printf("damped chain, %s: error %.3g\n", lattice_schemes_table(schemes[k])->name, worst);
         assert_below(worst, schemes[k] == LATTICE_RK4 ? 1e-8 : 2e-3);
-        motion_free(&s);
+        bodies_motion_free(&s);
     }
     bodies_free(cells);
 }

@@ -1,9 +1,11 @@
 /* The same bits on any number of ranks as on one: each rank runs the whole body alone, then its part of it, and compares digests. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "fail.h"
 #include "lattice_bodies.h"
+#include "lattice_break.h"
 #include "tests/mpi_check.h"
 
 static void rows_at(void *context, double t, double from, double to, double *rows)
@@ -17,7 +19,9 @@ static void rows_at(void *context, double t, double from, double to, double *row
 static struct device *dev;
 static struct comm *comm, alone;
 
-static uint64_t digest(const struct comm *who, const struct lattice_cells *cells, const struct lattice_options *o, int n_step, bool observe)
+/* count: links broken by mode. */
+static uint64_t digest(
+    const struct comm *who, const struct lattice_cells *cells, const struct lattice_options *o, int n_step, bool observe, int64_t *count)
 {
     struct lattice *l = lattice_create(dev, who, cells, o);
     uint64_t value = 0;
@@ -35,6 +39,8 @@ static uint64_t digest(const struct comm *who, const struct lattice_cells *cells
         comm_sum_i64(who, &sent, 1);
         CHECK(sent > 0);
     }
+    memset(count, 0, LATTICE_BREAK_MODES * sizeof *count);
+    if (l->breakage) lattice_break_count(l->breakage, count);
     lattice_free(l);
     return value;
 }
@@ -57,11 +63,14 @@ static void check(const int size[3], bodies_solid *solid, int n_grid, int n_mate
     if (n_material == 1)
         for (int64_t i = 0; i < cells->n; i++) cells->row[i] = 0;
     bodies_shake(cells, 5, 100);
-    uint64_t one = digest(&alone, cells, &o, 10, false), all = digest(comm, cells, &o, 10, false), looked = digest(comm, cells, &o, 10, true);
+    int64_t count[3][LATTICE_BREAK_MODES];
+    uint64_t one = digest(&alone, cells, &o, 10, false, count[0]), all = digest(comm, cells, &o, 10, false, count[1]);
     CHECK(one == all);
-    CHECK(one == looked);
+    CHECK(one == digest(comm, cells, &o, 10, true, count[2]));
+    CHECK(!memcmp(count[0], count[1], sizeof count[0]) && !memcmp(count[0], count[2], sizeof count[0]));
+    if (o.strength) CHECK(count[0][0] > 20 && count[0][1] > 20 && count[0][2] > 20);
     o.dt = 1.0001e-4;
-    CHECK(digest(comm, cells, &o, 10, false) != one); /* the digest sees what happens */
+    CHECK(digest(comm, cells, &o, 10, false, count[0]) != one); /* the digest sees what happens */
     bodies_free(cells);
 }
 
@@ -75,7 +84,10 @@ int main(int argc, char **argv)
     check(size, bodies_block, 1, 1, (struct lattice_options){0});
     check(thin, bodies_block, 1, 1, (struct lattice_options){.turn = true});
     check(tiny, bodies_block, 1, 1, (struct lattice_options){0});
+    const struct link_strength strength[4] = {{4e5, 8e5, 2}, {6e5, 6e5, 0}, {8e5, 4e5, 1}, {10e5, 2e5, 2}};
     for (int k = 0; k < 5; k++) check(size, bodies_mixed, 2, 2, (struct lattice_options){.turn = true, .scheme = scheme[k]});
+    for (int k = 0; k < 5; k++) check(size, bodies_mixed, 2, 2, (struct lattice_options){.turn = true, .scheme = scheme[k], .strength = strength});
+    check(size, bodies_block, 1, 1, (struct lattice_options){.strength = strength});
     check(size, bodies_mixed, 2, 2, (struct lattice_options){.real_is_float = true});
     check(size, bodies_voxels, 1, 2, (struct lattice_options){.turn = true, .real_is_float = true, .position_is_float = true});
     device_free(dev);

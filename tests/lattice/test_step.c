@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "fail.h"
+#include "lattice_break.h"
 #include "lattice_host.h"
 #include "lattice_stress.h"
 
@@ -22,7 +23,7 @@ static void rows_at(void *context, double t, double from, double to, double *row
 }
 
 /* Cells and options that need just the features this test was compiled with. */
-static struct lattice_cells *make(struct lattice_options *o, struct link_material material[2], double alpha[2])
+static struct lattice_cells *make(struct lattice_options *o, struct link_material material[2], double alpha[2], struct link_strength strength[4])
 {
     const int size[3] = {37, 7, 5};
     int n_material = WITH_KINDS ? 2 : 1;
@@ -39,6 +40,8 @@ static struct lattice_cells *make(struct lattice_options *o, struct link_materia
     o->alpha = WITH_MASS_DAMPING ? alpha : NULL;
     o->n_row = WITH_LOADS ? 5 : 1;
     o->rows_at = rows_at;
+    for (int k = 0; k < 4; k++) strength[k] = (struct link_strength){(4 + 2 * k) * 1e5, (10 - 2 * k) * 1e5, k % 3};
+    o->strength = WITH_BREAK ? strength : NULL;
     for (int a = 0; a < 3; a++) o->gravity[a] = WITH_GRAVITY ? gravity[a] : 0;
     struct lattice_cells *c = bodies_create(WITH_KINDS ? 2 : 1, size, 0.1, n_material, bodies_mixed);
     for (int64_t i = 0; i < c->n; i++) {
@@ -53,7 +56,7 @@ static void check_features(const struct lattice_features *f)
 {
     assert_true(f->turn == WITH_TURN && f->volume == WITH_VOLUME && f->shear_apart == WITH_SHEAR_APART && f->twist_apart == WITH_TWIST_APART);
     assert_true(f->link_damping == WITH_LINK_DAMPING && f->mass_damping == WITH_MASS_DAMPING && f->fix == WITH_FIX && f->loads == WITH_LOADS);
-    assert_true(f->gravity == WITH_GRAVITY && f->kinds == WITH_KINDS && f->rk == WITH_RK);
+    assert_true(f->gravity == WITH_GRAVITY && f->kinds == WITH_KINDS && f->rk == WITH_RK && f->breakage == WITH_BREAK);
 }
 
 static void same(const char *what, int64_t i, const double *device, double x, double y, double z)
@@ -114,13 +117,41 @@ static void compare_stress(struct lattice *l, const struct host *h, struct link_
     free(equivalent);
 }
 
+/* Links left, and modes; some links break before step 3, more after it, some stay. */
+static void compare_links(const struct lattice *l, const struct host *h, int step)
+{
+    static int64_t before;
+    int32_t *links = fail_alloc((size_t)h->n * sizeof *links), *fate = fail_alloc((size_t)h->n * sizeof *fate);
+    int64_t count[LATTICE_BREAK_MODES], counted[LATTICE_BREAK_MODES] = {0}, all = 0, left = 0;
+    lattice_break_read(l->breakage, links, fate);
+    lattice_break_count(l->breakage, count);
+    for (int64_t i = 0; i < h->n; i++) {
+        assert_int_equal(links[i], h->links[i]);
+        assert_int_equal(fate[i], h->fate[i]);
+        left += __builtin_popcount((unsigned)links[i]);
+        for (int axis = 0; axis < 3; axis++)
+            if (FATE_MODE(fate[i], axis)) counted[FATE_MODE(fate[i], axis) - 1]++;
+    }
+    for (int mode = 0; mode < LATTICE_BREAK_MODES; mode++) {
+        assert_int_equal(count[mode], counted[mode]);
+        all += count[mode];
+    }
+    printf("step %d: broken by tension %lld, shear %lld, bending %lld, twist %lld, left %lld\n", step, (long long)count[0], (long long)count[1],
+        (long long)count[2], (long long)count[3], (long long)left / 2);
+    assert_true(all > (step == 3 ? 0 : before) && left > 0);
+    before = all;
+    free(links);
+    free(fate);
+}
+
 /* Observed at steps 0, 3 and 7; between them no stress is asked for, after step 3 it must not matter that it was. */
 static void run(enum lattice_scheme scheme, bool one_lane, int run_length)
 {
     struct link_material material[2];
     double alpha[2];
     struct lattice_options o = {.scheme = scheme, .run = run_length};
-    struct lattice_cells *cells = make(&o, material, alpha);
+    struct link_strength strength[4];
+    struct lattice_cells *cells = make(&o, material, alpha, strength);
     struct device *dev = device_open(comm, NULL, false, false);
     if ((!POSITION_IS_FLOAT && !dev->fp64) || (REAL_IS_FLOAT && !dev->fp32_correct_divide)) exit(77);
     dev->one_lane = one_lane;
@@ -139,6 +170,7 @@ static void run(enum lattice_scheme scheme, bool one_lane, int run_length)
         host_observe(h, seen);
         compare(l, seen);
         compare_stress(l, h, seen);
+        if (WITH_BREAK) compare_links(l, h, step);
     }
     free(seen);
     host_free(h);

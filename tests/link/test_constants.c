@@ -61,9 +61,11 @@ static void mixed(void **state)
 
 static void strength(void **state)
 {
-    const struct link_strength a = {2, 5}, b = {3, HUGE_VAL};
+    const struct link_strength a = {2, 5, 1}, b = {3, HUGE_VAL, 0}, c = {3, HUGE_VAL, 2};
     (void)state;
     assert_true(link_constants_weaker(a, b).tension == 2 && link_constants_weaker(b, a).shear == 5);
+    assert_true(link_constants_weaker(a, b).criterion == 1 && link_constants_weaker(b, a).criterion == 1);
+    assert_true(link_constants_weaker(b, c).criterion == 0 && link_constants_weaker(c, b).criterion == 0);
     /* glass: E = 70 GPa, G_c = 8 J/m2, h = 1 mm */
     const struct link_material glass = {2500, 70e9, 0.22, 0};
     assert_near(link_constants_tension(glass, 8, 1e-3, false) / 17.748239e6, 1, 1e-7);

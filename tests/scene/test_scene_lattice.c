@@ -10,21 +10,22 @@ static void check_materials(const struct material *m)
     assert_true(m[0].mass_damping == 120 && m[0].link_damping == 1e-8 && m[0].has_strength && m[0].tension == 400e6 && m[0].shear == 200e6);
     assert_true(m[0].criterion == CRITERION_STRESS && m[0].energy == 0);
     assert_true(fabs(m[1].mass_damping - 4 * M_PI * 200 * 0.05) < 1e-12 && m[1].link_damping == 0);
-    assert_true(m[1].poisson == -0.2 && m[1].tension == 0 && m[1].energy == 8 && m[1].plane == PLANE_STRESS && m[1].criterion == CRITERION_SUM);
+    assert_true(m[1].poisson == -0.2 && m[1].tension == 0 && m[1].energy == 8 && m[1].plane == PLANE_STRESS);
     assert_true(m[2].mass_damping == 0 && fabs(m[2].link_damping * (M_PI * 2e6) - 0.05) < 1e-16 && m[2].plane == PLANE_STRAIN);
-    assert_true(isinf(m[2].shear) && isinf(m[3].tension) && m[3].shear == 1e3 && m[3].criterion == CRITERION_LARGEST);
+    assert_true(isinf(m[2].shear) && isinf(m[3].tension) && m[3].shear == 1e3 && m[3].criterion == CRITERION_SUM);
 }
 
 static void check_bodies(const struct body *b)
 {
     assert_true(b[0].material == 0 && b[0].cell == 5e-3 && b[0].shape.kind == REGION_BOX && b[0].shape.max[2] == 0.1 && b[0].n_minus == 3);
+    assert_true(b[0].n_crack == 0 && b[1].n_crack == 2 && b[1].crack[0].kind == REGION_BOX && b[1].crack[0].max[2] == 0.5);
     assert_true(b[0].minus[0].kind == REGION_SPHERE && b[0].minus[0].center[1] == 0.5 && b[0].minus[0].radius == 0.05);
     assert_true(b[0].minus[1].kind == REGION_STL && b[0].minus[1].scale == 1e-3 && b[0].minus[2].kind == REGION_BOX);
     assert_true(b[1].shape.kind == REGION_CYLINDER && b[1].shape.radius == 0.01 && b[1].n_minus == 0 && b[1].velocity[2] == -1);
     assert_true(b[2].shape.kind == REGION_SPHERE && b[2].shape.center[2] == 2);
     ASSERT_VECTOR(b[2].angular_velocity, 1, 2, 3);
     assert_true(b[3].shape.kind == REGION_STL && b[3].shape.stl && b[3].shape.scale == 0.01 && b[3].minus[0].kind == REGION_CYLINDER);
-    assert_true(b[0].line == 12 && b[0].column == 5 && b[3].line == 16);
+    assert_true(b[0].line == 12 && b[0].column == 5 && b[3].line == 17);
 }
 
 static void check_boundaries(const struct boundary *b)
@@ -56,7 +57,7 @@ static void every_key(void **state)
     assert_true(s->lattice.relax && s->lattice.tolerance == 1e-4 && s->lattice.look_every == 50);
     assert_true(s->output.n_field == 2 && !strcmp(s->output.field[1], "broken"));
     assert_true(s->measure[0].kind == MEASURE_PROBE && s->measure[0].at[2] == 5e-3 && s->measure[0].n_field == 1 && s->measure[1].n_field == 2);
-    assert_true(s->measure[2].kind == MEASURE_STRESS_MAX && s->measure[3].kind == MEASURE_ENERGY);
+    assert_true(s->measure[2].kind == MEASURE_STRESS_MAX && s->measure[3].kind == MEASURE_ENERGY && s->measure[4].kind == MEASURE_BROKEN);
     scene_free(s);
 }
 

@@ -35,6 +35,21 @@ def block(scheme):
             "measure": [{"name": "end", "every": 2e-6, "probe": {"at": [0.33, 0, 0]}}], "output": {"every": 0}}
 
 
+def torn():
+    """cases/notched_bar with coarse cells, its load so fast that it breaks within 300 steps."""
+    with open(os.path.join(parallel_runs.CASES, "notched_bar", "scene.yaml")) as file:
+        scene = yaml.safe_load(file)
+    scene["bodies"][0].update(cell=0.002, shape={"box": {"min": [0, 0, 0], "max": [0.12, 0.04, 0.002]}})
+    for load in scene["boundaries"]:
+        load["where"]["box"]["max"][2] = 0.002
+        load["force"] = [math.copysign(500, float(load["force"][0].split()[0])), 0, 0]
+        load["history"] = {"ramp": 2.5e-5}
+    scene["output"] = {"every": 0, "fields": ["broken"]}
+    for measure in scene["measure"]:
+        measure["every"] = 1e-6
+    return scene
+
+
 class Lattice(parallel_runs.Case):
     def put(self, scene):
         path = os.path.join(self.dir, "scene.yaml")
@@ -60,6 +75,32 @@ class Lattice(parallel_runs.Case):
                         self.assertEqual(found, alone)
                         self.assertEqual(record["plain_steps"]["allocations"], 0)
                         self.assertTrue(n == 1 or record["halo_bytes_per_step"] > 0)
+
+    def test_breakage(self):
+        """The same bits, counts and broken links on any number of ranks; frames, series and record agree."""
+        for precision, scheme, ranks in (("double", "leapfrog", (1, 3, 4)), ("double", "rk4", (1, 3)), ("single", "pefrl", (1, 2))):
+            alone, scene = None, torn()
+            scene["time"] = {**scene["time"], "scheme": scheme, "step": 1.5e-7}
+            for n in ranks:
+                with self.subTest(scheme=scheme, ranks=n):
+                    run = self.good_run(self.put(scene), n, "--precision", precision, "--steps", "300")
+                    record, frame = run.record(), frames.Frame(run.frames()[-1])
+                    order = numpy.argsort(frame.field("id"))
+                    links, fate, lost = (frame.field(name)[order] for name in ("links", "fate", "broken"))
+                    found = [record["digest"], record["broken"], run.series(), links.tolist(), fate.tolist(), lost.tolist()]
+                    alone = alone or found
+                    self.assertEqual(found, alone)
+                    self.assertEqual(record["plain_steps"]["allocations"], 0)
+                    modes = [sum(int(((fate >> shift & 7) == mode).sum()) for shift in (0, 3, 6)) for mode in (1, 2, 3, 4)]
+                    counted = [record["broken"][name] for name in ("tension", "shear", "bending", "twist")]
+                    self.assertEqual(modes, counted)
+                    self.assertEqual(self.rows(run, "broken")[-1][1:], counted)
+                    self.assertEqual(int(lost.sum()), 2 * sum(counted))
+                    first = frames.Frame(run.frames()[0])
+                    whole = first.field("links")[numpy.argsort(first.field("id"))]
+                    gone = numpy.array([bin(mask).count("1") for mask in (whole & ~links).tolist()])
+                    self.assertEqual(gone.tolist(), lost.tolist())
+                    self.assertGreater(sum(counted), 10)
 
     def test_free_chain_rings(self):
         """A row of cells between two ends that start with opposite velocities: mode k = 1 of the free chain, w = 2 sqrt(kn/m) sin(pi/(2 N)), whose

@@ -1,0 +1,30 @@
+/* Links of a lattice that break: judged once per step from the state at its start, gone at its end, the same on any number of ranks. There only
+ * where the scene gives a strength; its kernels are built only then.
+ *
+ * The largest frequency, so the limit of the time step, does not rise: links only disappear (lattice_limit.h). Faces of a crack do not touch
+ * again. */
+#ifndef DEMOCLES_LATTICE_BREAK_H
+#define DEMOCLES_LATTICE_BREAK_H
+
+#include "lattice.h"
+
+enum { LATTICE_BREAK_MODES = 4 }; /* tension, shear, bending, twist: BREAK_* of kernels/law_break.h less 1 */
+
+struct lattice_break;
+
+/* The lattice is borrowed for life. Collective. */
+struct lattice_break *lattice_break_create(struct lattice *l, const struct lattice_cells *cells);
+void lattice_break_free(struct lattice_break *b); /* NULL is fine */
+
+/* Enqueue. x_in, v_in: first numbers of the sets of planes with the state to judge; ghosts and pressures are of that state too. */
+void lattice_break_judge(struct lattice_break *b, int64_t x_in, int64_t v_in);
+void lattice_break_part(struct lattice_break *b);
+
+/* Names of the modes, and how many links of all ranks broke in each so far. Collective. */
+const char *lattice_break_name(int mode);
+void lattice_break_count(const struct lattice_break *b, int64_t count[LATTICE_BREAK_MODES]);
+/* Of this rank's cells in the order of layout->gid, [n_owned] each; NULL is left out. links: those left, LINK_BIT of kernels/law_volume.h; fate: how
+ * those at its upper faces broke (kernels/lattice_words.h). */
+void lattice_break_read(const struct lattice_break *b, int32_t *links, int32_t *fate);
+
+#endif
