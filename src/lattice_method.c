@@ -122,6 +122,7 @@ static bool is_at_rest(struct sim *s)
     if (is_second) {
         yes = lattice_relax_second(relax, s->scene->lattice.tolerance);
         s->rest.left = lattice_relax_rest(relax)->left / lattice_relax_rest(relax)->scale;
+        s->rest.damping = lattice_relax_rest(relax)->alpha;
     } else {
         lattice_relax_first(relax);
     }

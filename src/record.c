@@ -82,6 +82,7 @@ static void add_rest(struct report *r, const struct sim *s)
     report_begin(r, "rest");
     report_flag(r, "reached", s->rest.reached);
     report_number(r, "left", s->rest.left);
+    report_number(r, "damping", s->rest.damping);
     report_end(r);
 }
 

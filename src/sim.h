@@ -62,9 +62,10 @@ struct sim {
     bool observed;            /* the state on the device is that of a full step */
     double dt, dt_limit;      /* [s]; rigorous limit at the last build */
     struct {
-        int64_t next; /* step of the next look whether the elements are at rest; 0: the scene does not ask */
-        bool reached; /* the run ends then */
-        double left;  /* [1] of the method, at the last look; NaN before the first */
+        int64_t next;   /* step of the next look whether the elements are at rest; 0: the scene does not ask */
+        bool reached;   /* the run ends then */
+        double left;    /* share of the largest force [1], at the last look; NaN before the first */
+        double damping; /* of mass, set by the last look [1/s] */
     } rest;
     struct watch watch;
     struct timers timers;
