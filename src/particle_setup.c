@@ -164,8 +164,8 @@ void particle_setup(struct sim *s)
 {
     s->n_first = s->first->n;
     s->left = fail_alloc((size_t)s->scene->n_measure * sizeof *s->left);
-    log_print(s->log, "%lld element%s, %d wall%s", (long long)s->n_first, s->n_first == 1 ? "" : "s", s->scene->n_wall,
-        s->scene->n_wall == 1 ? "" : "s");
+    log_print(
+        s->log, "%lld element%s, %d wall%s", (long long)s->n_first, s->n_first == 1 ? "" : "s", s->scene->n_wall, s->scene->n_wall == 1 ? "" : "s");
     create_kernels(s);
     s->particles = particles_create(s->dev, &s->features, s->program_lists);
     s->scan = scan_create(s->dev, s->program_lists);
