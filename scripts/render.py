@@ -42,7 +42,8 @@ def arguments():
     parser.add_argument("--field", metavar="NAME", help="colour by this field; a vector by its magnitude (default: velocity)")
     parser.add_argument("--range", metavar="LOW,HIGH", type=numbers(2, ",", float, lambda v: v[0] < v[1], "two numbers, as 0,1.5"),
                         help="ends of the colour bar (default: from the frames)")
-    parser.add_argument("--warp", metavar="FACTOR", type=float, help="magnify the displacements of a solid (default: to a twelfth of its size)")
+    parser.add_argument("--warp", metavar="FACTOR", type=float,
+                        help="magnify the displacements of a solid (default: to a twelfth of its size, if they are smaller)")
     parser.add_argument("--view", metavar="X,Y,Z", type=numbers(3, ",", float, any, "a direction, as 1,0,0.5"),
                         help="direction from which to look (default: along the thinnest extent, slightly turned)")
     parser.add_argument("--size", metavar="WxH", type=numbers(2, "x", int, lambda v: min(v) >= 100, "pixels, as 1600x1000, at least 100 each"),
@@ -127,18 +128,25 @@ class Colours:
         """viridis without its darkest part, in which spheres would lose their shading."""
         return matplotlib.colors.ListedColormap(plt.get_cmap("viridis")(numpy.linspace(0.16, 1, self.levels)))
 
-    def label(self):
-        name = self.name.replace("_", " ")
-        return f"{name} [{self.unit}]" if self.unit else name
+    def prefix(self):
+        """(1e6, "M") for millions of pascals; other units are written without."""
+        large = max(abs(self.low), abs(self.high))
+        return next(((f, p) for f, p in ((1e9, "G"), (1e6, "M"), (1e3, "k")) if self.unit == "Pa" and large >= f), (1, ""))
+
+    def label(self, prefix=""):
+        name = {"von_mises": "von Mises stress"}.get(self.name, self.name.replace("_", " "))
+        return f"{name} [{prefix}{self.unit}]" if self.unit else name
 
 
 def magnification(samples):
-    """Round factor that makes the largest displacement of a solid a twelfth of its size."""
+    """Round factor that makes the largest displacement of a solid a twelfth of its size; 1 for what moves farther by itself."""
     solids = [frame for frame in samples if frame.corners is not None]
     largest = max((numpy.linalg.norm(frame.displacement, axis=2).max() for frame in solids), default=0)
     if not largest > 0:
         return 1.0
     size = max(numpy.ptp(solids[0].corners.reshape(-1, 3), axis=0))
+    if largest >= size / 12:
+        return 1.0
     power = 10.0 ** math.floor(math.log10(size / 12 / largest))
     return max(m * power for m in (1, 2, 5) if m * power <= size / 12 / largest)
 
@@ -205,9 +213,10 @@ class Layout:
 
     def colour_bar(self, colours):
         axis = self.figure.add_axes((0.3, 0.082, 0.4, 0.02))
-        norm = matplotlib.colors.Normalize(colours.low, colours.high)
+        factor, prefix = colours.prefix()
+        norm = matplotlib.colors.Normalize(colours.low / factor, colours.high / factor)
         bar = self.figure.colorbar(matplotlib.cm.ScalarMappable(norm, colours.map()), cax=axis, orientation="horizontal")
-        bar.set_label(colours.label(), size=self.text)
+        bar.set_label(colours.label(prefix), size=self.text)
         if colours.levels < 256:
             bar.set_ticks(range(math.ceil(colours.low), math.floor(colours.high) + 1, max(1, colours.levels // 10)))
         bar.ax.tick_params(labelsize=0.9 * self.text)
@@ -246,7 +255,7 @@ class Picture:
         low, high = extent(samples, self.walls, warp)
         axes = view_axes(low, high, scene.get("gravity"), options.view)
         title = scene.get("title") or pathlib.Path(options.dir).resolve().name
-        if any(frame.corners is not None for frame in samples):
+        if warp != 1 and any(frame.corners is not None for frame in samples):
             title += f" (displacements \u00d7 {warp:g})"
         self.layout = Layout(*size, n, title, self.colours, axes, low, high)
         colour_table = self.colours.map()(numpy.linspace(0, 1, self.colours.levels))

@@ -25,9 +25,11 @@ def view_axes(low, high, gravity, towards=None):
     if towards is None:
         thin = int(numpy.argmin(high - low))
         back = numpy.eye(3)[thin] * (-1 if thin == 1 else 1)  # from -y the x axis points to the right
-        if abs(back @ up) > 0.9:  # thin in the direction of gravity: still from the side, well above
-            others = sorted((a for a in range(3) if a != thin), key=lambda a: (high - low)[a])
-            back = numpy.eye(3)[others[0]] * (-1 if others[0] == 1 else 1) + 0.7 * up
+        if abs(back @ up) > 0.9:  # thin in the direction of gravity: from the side, turned, well above
+            along, across = (a for a in range(3) if a != thin)
+            if (high - low)[across] > 1.25 * (high - low)[along]:
+                along, across = across, along
+            back = numpy.eye(3)[across] * (-1 if across == 1 else 1) - 0.45 * numpy.eye(3)[along] + 0.75 * up
         else:
             back = back + 0.32 * numpy.cross(up, back) + 0.22 * up
     else:

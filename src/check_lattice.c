@@ -66,7 +66,9 @@ static void print_time(const struct scene *scene, const struct lattice_cells *ce
     printf("\ntime: %g s in %.0f steps of %.6g s, ", time->end, ceil(time->end / dt * (1 - 1e-12)), dt);
     if (time->step > 0) printf("as given");
     else printf("%g of the limit", time->safety);
-    printf(", by %s\n    limit %.4g s, from the largest frequency, %.4g Hz\n", scheme[time->scheme], limit, largest / (2 * M_PI));
+    printf(", by %s", scheme[time->scheme]);
+    if (scene->lattice.relax) printf(", or until %g of the largest force is left", scene->lattice.tolerance);
+    printf("\n    limit %.4g s, from the largest frequency, %.4g Hz\n", limit, largest / (2 * M_PI));
     if (zeta > 0) printf("    damping of links is %.4g of critical there%s", zeta, factor < free ? "" : " and costs no time step\n");
     if (zeta > 0 && factor < free) printf(", and makes the step %.3g times smaller than without\n", free / factor);
     if (dt > limit) printf("    the step is over it: a run %s\n", time->allow_unstable ? "goes on, as asked for" : "is refused");

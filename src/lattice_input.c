@@ -39,7 +39,7 @@ struct lattice_input *lattice_input_create(const struct scene *scene, const stru
     input->loads = cells->loads;
     for (size_t m = 0; m < n; m++) {
         input->material[m] = lattice_frequency_material(&scene->material[m]);
-        input->alpha[m] = scene->material[m].mass_damping;
+        input->alpha[m] = scene->lattice.relax ? 1 / scene->time.end : scene->material[m].mass_damping; /* lattice_relax.h sets it anew */
     }
     input->options = (struct lattice_options){.dt = dt,
         .scheme = (enum lattice_scheme)scene->time.scheme,

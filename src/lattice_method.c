@@ -36,7 +36,6 @@ static void refuse(const struct scene *scene, struct scene_errors *errors)
             if (is_listed(what->field, what->n_field, later[k]))
                 scene_errors_add(errors, "%s:%d: measure '%s': a probe of %s is not in this version", scene->path, what->line, what->name, later[k]);
     }
-    if (scene->lattice.relax) scene_errors_add(errors, "%s: lattice.relax is not in this version", scene->path);
 }
 
 static void read(struct sim *s)
@@ -68,6 +67,10 @@ static void setup(struct sim *s)
     r->lattice = lattice_create(s->dev, s->comm, r->cells, &r->input->options);
     r->account = lattice_energy_create(r->lattice, r->cells);
     if (wants_stress(s->scene)) r->stress = lattice_stress_create(r->lattice, s->scene->lattice.stress == STRESS_EXTRAPOLATED);
+    if (s->scene->lattice.relax) {
+        r->relax = lattice_relax_create(r->lattice, r->cells, s->scene->time.end);
+        s->rest.next = s->scene->lattice.look_every - 1;
+    }
     lattice_energy_now(r->account, &r->energy_start);
 }
 
@@ -81,6 +84,7 @@ static void release(struct sim *s)
     if (!s->solid) return;
     lattice_energy_free(s->solid->account);
     lattice_stress_free(s->solid->stress);
+    lattice_relax_free(s->solid->relax);
     lattice_free(s->solid->lattice);
     lattice_input_free(s->solid->input);
     lattice_cells_free(s->solid->cells);
@@ -108,6 +112,21 @@ static void advance(struct sim *s, bool observe)
 static void resume(struct sim *s)
 {
     lattice_resume(s->solid->lattice);
+}
+
+static bool is_at_rest(struct sim *s)
+{
+    struct lattice_relax *relax = s->solid->relax;
+    int64_t every = s->scene->lattice.look_every;
+    bool is_second = s->step % every == 0, yes = false;
+    if (is_second) {
+        yes = lattice_relax_second(relax, s->scene->lattice.tolerance);
+        s->rest.left = lattice_relax_rest(relax)->left / lattice_relax_rest(relax)->scale;
+    } else {
+        lattice_relax_first(relax);
+    }
+    s->rest.next += is_second ? every - 1 : 1;
+    return yes;
 }
 
 static bool digest(struct sim *s, uint64_t *digest)
@@ -204,6 +223,7 @@ const struct step_ops lattice_ops = {
     .advance = advance,
     .resume = resume,
     .check_limit = check_limit,
+    .is_at_rest = is_at_rest,
     .n_element = number,
     .frame = lattice_method_frame,
     .measure_columns = lattice_method_measure_columns,

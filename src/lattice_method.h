@@ -5,6 +5,7 @@
 #include "lattice_break.h"
 #include "lattice_energy.h"
 #include "lattice_input.h"
+#include "lattice_relax.h"
 #include "lattice_stress.h"
 #include "sim.h"
 
@@ -14,6 +15,7 @@ struct lattice_run {
     struct lattice_input *input;
     struct lattice *lattice;
     struct lattice_stress *stress; /* NULL where nobody asks for it */
+    struct lattice_relax *relax;   /* NULL: a motion, not a state of rest */
     struct lattice_account *account;
     struct lattice_energy energy_start;
 };

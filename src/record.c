@@ -6,6 +6,7 @@
 
 #include "digest.h"
 #include "fail.h"
+#include "lattice_schemes.h"
 #include "report.h"
 #include "version.h"
 
@@ -76,6 +77,14 @@ static void add_plain_steps(struct report *r, const struct sim *s)
     report_end(r);
 }
 
+static void add_rest(struct report *r, const struct sim *s)
+{
+    report_begin(r, "rest");
+    report_flag(r, "reached", s->rest.reached);
+    report_number(r, "left", s->rest.left);
+    report_end(r);
+}
+
 bool record_write(struct sim *s, int exit_code, bool observed)
 {
     char digest[17] = "";
@@ -92,7 +101,7 @@ bool record_write(struct sim *s, int exit_code, bool observed)
     report_text(r, "title", s->scene->title);
     report_text(r, "method", s->ops->name);
     report_text(r, "precision", precision[s->scene->precision]);
-    report_text(r, "scheme", "leapfrog");
+    report_text(r, "scheme", lattice_schemes_table((enum lattice_scheme)s->scene->time.scheme)->name); /* particles: leapfrog */
     report_integer(r, "ranks", s->comm->n_rank);
     add_devices(r, s);
     report_text(r, "partition", "geometric");
@@ -106,6 +115,7 @@ bool record_write(struct sim *s, int exit_code, bool observed)
         s->ops->report_kernels(s, r);
         report_end(r);
     }
+    if (s->rest.next > 0) add_rest(r, s);
     s->ops->report_energy(s, r, observed);
     report_integer(r, "exit", exit_code);
     report_text(r, "digest", whole ? digest : NULL);

@@ -89,6 +89,8 @@ void scene_check_lattice(struct scene_reader *reader)
     check_materials(reader);
     check_bodies(reader);
     for (int k = 0; k < reader->scene->n_boundary; k++) check_boundary(reader, k);
+    if (reader->scene->lattice.relax && !scene_issue_is_below(reader, "time.scheme") && reader->scene->time.scheme != SCHEME_LEAPFROG)
+        scene_issue_on(reader, "time.scheme", "lattice.relax takes leapfrog alone");
 }
 
 void scene_check_derive_damping(struct scene *scene)

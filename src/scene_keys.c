@@ -14,6 +14,7 @@
 #define ABOVE_ZERO {.given = true, .low_open = true, .low = 0, .high = HUGE_VAL}
 #define FROM_ZERO {.given = true, .low = 0, .high = HUGE_VAL}
 #define FROM_ONE {.given = true, .low = 1, .high = HUGE_VAL}
+#define FROM_TWO {.given = true, .low = 2, .high = HUGE_VAL}
 #define ZERO_TO_ONE {.given = true, .low = 0, .high = 1}
 #define SHARE {.given = true, .low_open = true, .low = 0, .high = 1}
 #define POISSON {.given = true, .low_open = true, .low = -1, .high = 0.5}
@@ -260,11 +261,11 @@ SPHERE_KEYS("boundaries[].where", boundary, where., AT_MOST_ONE),
     .text = "finite: cells may turn by any angle; small: linear, cheaper, wrong for a body that turns"},
 {"lattice.stress", KEY_CHOICE, .fallback = "average", .words = "average|extrapolated", .at = AT(scene, lattice.stress),
     .text = "of a cell with a free face: true average (half at the surface), or from the faces that have links"},
-{"lattice.relax", KEY_MAP, .mark = HAS(scene, lattice.relax), .text = "look for the state of rest, and stop there"},
+{"lattice.relax", KEY_MAP, .mark = HAS(scene, lattice.relax), .text = "look for the state of rest under the loads of time.end, and stop there"},
 {"lattice.relax.tolerance", KEY_NUMBER, .fallback = "1e-6", .range = BELOW_ONE, .at = AT(scene, lattice.tolerance),
-    .text = "largest force that is left on a cell, as a share of the largest link force"},
-{"lattice.relax.every", KEY_INTEGER, .fallback = "100", .range = FROM_ONE, .at = AT(scene, lattice.look_every),
-    .text = "steps between two looks at it"},
+    .text = "largest force that is left on a cell, as a share of the largest stress on its faces"},
+{"lattice.relax.every", KEY_INTEGER, .fallback = "100", .range = FROM_TWO, .at = AT(scene, lattice.look_every),
+    .text = "steps between two looks at it, which set the damping that leads there"},
 
 {"domain", KEY_MAP, .only = "particles", .fallback = "{}", .text = "the space of the run"},
 {"domain.periodic", KEY_AXES, .fallback = "[]", .words = "x|y|z", .at = AT(scene, domain.periodic), .text = "directions that repeat; they need box"},

@@ -53,6 +53,7 @@ struct sim *sim_create(struct scene *scene, struct comm *comm, struct log *log, 
     s->log = log;
     s->ops = scene->method == METHOD_LATTICE ? &lattice_ops : &particle_ops;
     s->started = timer_now();
+    s->rest.left = (double)NAN;
     timer_begin(&s->timers, TIMER_SETUP);
     s->ops->read(s);
     s->ops->plan(s);
@@ -107,6 +108,20 @@ static void count_plain(struct sim *s, const struct device_counters *before)
     s->plain.n_launch += now->n_launch - before->n_launch;
 }
 
+/* Returns the exit code. Who asks for rest and gets none by the scene's end has no result. */
+static int close_run(struct sim *s, bool stopped)
+{
+    bool restless = s->rest.next > 0 && !s->rest.reached && !stopped && (double)s->step * s->dt >= s->scene->time.end * (1 - 1e-12);
+    int code = stopped ? EXIT_STOPPED : restless ? EXIT_NUMERICS : EXIT_DONE;
+    if (stopped) log_print(s->log, "stopped on request at step %lld; a frame was written", (long long)s->step);
+    if (s->rest.reached) log_print(s->log, "at rest after step %lld", (long long)s->step);
+    output_close(s, code);
+    if (restless)
+        fail_stop_together(EXIT_NUMERICS, "not at rest by time.end, %g s: %.3g of the largest force was left at the last look, relax.tolerance is %g",
+            s->scene->time.end, s->rest.left, s->scene->lattice.tolerance);
+    return code;
+}
+
 int sim_run(struct sim *s)
 {
     double output = 0;
@@ -114,7 +129,7 @@ int sim_run(struct sim *s)
     signals_keep();
     timer_begin(&s->timers, TIMER_LOOP);
     output_write(s, s->n_step == 0);
-    while (s->step < s->n_step && !stop) {
+    while (s->step < s->n_step && !stop && !s->rest.reached) {
         const struct device_counters before = s->dev->counters;
         int64_t n_rebuild = s->n_rebuild;
         bool plain = s->step > 0 && !s->observed;
@@ -122,14 +137,16 @@ int sim_run(struct sim *s)
         s->step++;
         stop = look_around(s);
         bool limit_due = s->step - s->limit_at >= LIMIT_EVERY;
-        s->observed = output_due(s, s->step) || s->step == s->n_step || stop || limit_due;
+        bool rest_due = s->step == s->rest.next;
+        s->observed = output_due(s, s->step) || s->step == s->n_step || stop || limit_due || rest_due;
         s->ops->advance(s, s->observed);
         s->element_steps += (double)s->ops->n_element(s);
         if (plain && !s->observed && s->n_rebuild == n_rebuild) count_plain(s, &before);
         if (s->observed) {
             device_finish(s->dev); /* what the steps took is theirs, not the output's */
             if (limit_due) s->ops->check_limit(s);
-            output_write(s, stop || s->step == s->n_step);
+            if (rest_due) s->rest.reached = s->ops->is_at_rest(s);
+            output_write(s, stop || s->rest.reached || s->step == s->n_step);
         }
         progress(s, false);
     }
@@ -139,10 +156,7 @@ int sim_run(struct sim *s)
     s->timers.total[TIMER_LOOP] -= output;
     s->timers.total[TIMER_COMPUTE] = s->timers.total[TIMER_LOOP] - s->timers.total[TIMER_EXCHANGE] - s->timers.total[TIMER_REGROUP];
     progress(s, true);
-    bool stopped = stop && s->step < s->n_step;
-    if (stopped) log_print(s->log, "stopped on request at step %lld; a frame was written", (long long)s->step);
-    output_close(s, stopped ? EXIT_STOPPED : EXIT_DONE);
-    return stopped ? EXIT_STOPPED : EXIT_DONE;
+    return close_run(s, stop && !s->rest.reached && s->step < s->n_step);
 }
 
 void sim_free(struct sim *s)

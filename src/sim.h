@@ -61,6 +61,11 @@ struct sim {
     int64_t cut_at, limit_at; /* of the last partition; of the last look at the limit */
     bool observed;            /* the state on the device is that of a full step */
     double dt, dt_limit;      /* [s]; rigorous limit at the last build */
+    struct {
+        int64_t next; /* step of the next look whether the elements are at rest; 0: the scene does not ask */
+        bool reached; /* the run ends then */
+        double left;  /* [1] of the method, at the last look; NaN before the first */
+    } rest;
     struct watch watch;
     struct timers timers;
     struct outputs *output;

@@ -28,6 +28,7 @@ struct step_ops {
     void (*advance)(struct sim *s, bool observe); /* forces at the step; observe: state of this time left on the device, else on to the next */
     void (*resume)(struct sim *s);                /* after an observed step: on to the next */
     void (*check_limit)(struct sim *s);           /* of an observed step, against its limit of now; over it, and not allowed: output_stop_numerics */
+    bool (*is_at_rest)(struct sim *s);            /* of an observed step, where sim.rest asks; may stop what moves. NULL: the method never asks */
 
     /* Output of an observed step; collective. */
     int64_t (*n_element)(const struct sim *s); /* of all ranks, now; not collective */

@@ -22,6 +22,7 @@ from matplotlib import pyplot  # noqa: E402
 
 import frames  # noqa: E402
 import plot  # noqa: E402
+import render  # noqa: E402
 import render_view  # noqa: E402
 import render_walls  # noqa: E402
 
@@ -132,6 +133,29 @@ class Drawing(unittest.TestCase):
             self.assertGreater(abs(back[thin]), 0.9)
             self.assertGreater(up[2], 0.9)
             self.assertGreater(right[1 - thin], 0.9)  # from -y or from +x: the other axis points to the right
+
+    def test_flat_things_are_seen_from_above_a_corner(self):
+        """The longer side points to the right, the corner of lowest x and y, or of largest x and lowest y, to the eye."""
+        for size, along, nearest in (((1, 1, 0.1), 0, (-1, -1)), ((1, 2, 0.1), 1, (1, -1))):
+            right, up, back = render_view.view_axes(numpy.zeros(3), numpy.array(size), None)
+            self.assertGreater(right[along], 0.9)
+            self.assertGreater(up[2], 0.7)
+            self.assertTrue(all(b * n > 0.3 for b, n in zip(back, nearest)))
+
+
+class Solid:
+    """A cube of edge 1 whose corners are displaced along x by so much."""
+
+    def __init__(self, by):
+        self.corners = render_view.corners_of(numpy.zeros(3), numpy.ones(3))[None]
+        self.displacement = by * numpy.array([1, 0, 0]) * numpy.ones((1, 8, 1))
+
+
+class Warp(unittest.TestCase):
+    def test_small_displacements_are_magnified_large_ones_are_not_made_smaller(self):
+        for by, factor in ((1e-3, 50), (0.03, 2), (0.09, 1), (5, 1)):
+            self.assertEqual(render.magnification([Solid(by)]), factor)
+        self.assertEqual(render.magnification([Made([[0, 0, 0]], [1])]), 1)
 
 
 class Folder(unittest.TestCase):

@@ -49,7 +49,7 @@ static void every_key(void **state)
     struct fixture *f = *state;
     fixture_copy(f, "lattice.yaml");
     struct scene *s = fixture_read(f, NULL, 0);
-    assert_true(s->method == METHOD_LATTICE && s->time.scheme == SCHEME_RK4 && s->n_body == 4 && s->n_boundary == 6 && s->n_group == 0);
+    assert_true(s->method == METHOD_LATTICE && s->time.scheme == SCHEME_LEAPFROG && s->n_body == 4 && s->n_boundary == 6 && s->n_group == 0);
     check_materials(s->material);
     check_bodies(s->body);
     check_boundaries(s->boundary);
