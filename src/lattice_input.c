@@ -37,6 +37,7 @@ struct lattice_input *lattice_input_create(const struct scene *scene, const stru
         .n_row = cells->loads->n_row,
         .rows_at = rows_at,
         .context = input};
+    for (int m = 0; m < scene->n_measure; m++) input->options.energy |= scene->measure[m].kind == MEASURE_ENERGY;
     memcpy(input->options.gravity, scene->gravity, sizeof input->options.gravity);
     return input;
 }
