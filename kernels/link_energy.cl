@@ -15,7 +15,7 @@ LAW real account_face(int face, struct lattice_view s, size_t l, int word, struc
 
 /* Links and volume of a cell [J]. */
 LAW void account_elastic(struct lattice_view s, size_t l, int word, struct link_cell c, struct lattice_load load, __global const real *cell,
-                         real *links, real *volume)
+                         real *links, real *volume, real *faces)
 {
     struct volume_constants k;
     real sum = 0;
@@ -30,6 +30,7 @@ LAW void account_elastic(struct lattice_view s, size_t l, int word, struct link_
     k.per_2h = cell[4];
     k.volume = cell[7];
     *volume = account_volume(sum, load, word & 63, k);
+    *faces = WITH_ENERGY && WITH_LOADS ? account_faces(sum, load, word & 63, k) : (real)0;
 }
 
 /* The cells of n runs of `list`. place [n_run][4]: where the centre of a run's first cell was [m], and the edge of its cells [m]. */
@@ -39,6 +40,9 @@ void link_energies(int n, __global const int *list, __global const int *info, __
                  __global const real *cell,
 #if WITH_LOADS
                  __global const int *row, __global const real *rows, int at_rows,
+#endif
+#if WITH_ENERGY
+                 __global const double *ledger,
 #endif
                  __global const double *place, double gravity_x, double gravity_y, double gravity_z, __global long *partial)
 {
@@ -62,9 +66,15 @@ void link_energies(int n, __global const int *list, __global const int *info, __
         __global const real *load_row = rows + at_rows + (size_t)row[i] * LOAD_WIDTH;
         LATTICE_LOAD(load, load_row);
 #endif
-        real links, volume;
-        account_elastic(s, l, word_i, c, load, constants, &links, &volume);
+        real links, volume, faces;
+        account_elastic(s, l, word_i, c, load, constants, &links, &volume, &faces);
         account_cell(c, links, volume, at, (double)constants[0], (double)constants[1], gravity, term);
+        term[ACCOUNT_WORK] = term[ACCOUNT_LINKS] = term[ACCOUNT_MASS] = 0.0;
+#if WITH_ENERGY
+        term[ACCOUNT_WORK] = ledger[i] + (double)faces + account_held(c, word_i, 1.0 / (double)constants[0], 1.0 / (double)constants[1]);
+        term[ACCOUNT_LINKS] = ledger[s.plane + i];
+        term[ACCOUNT_MASS] = ledger[2 * s.plane + i];
+#endif
         for (int k = 0; k < ACCOUNT_WIDTH; k++) sums_add(&sum[k], term[k]);
     }
     for (int k = 0; k < ACCOUNT_WIDTH; k++) sums_put(part, k, sum[k]);
