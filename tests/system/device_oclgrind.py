@@ -7,6 +7,8 @@ import shutil
 import subprocess
 import sys
 
+import yaml
+
 import parallel_runs
 
 HANG = 1100  # [s]; a thousand times slower than a processor
@@ -16,6 +18,19 @@ OPTIONS = ["--data-races", "--uninitialized", "--check-api", "--build-options", 
 FAULTS = [("cells.cl", "atomic_inc(&count[cell]);", "count[cell]++;", "data race at global memory", "cell_count"),
           ("rows.cl", "if (!fill) {", "if (!fill) { begin[e + 1000000] = 0;", "Invalid write of size 4 at global memory", "rows"),
           ("scan.cl", "int here = block[k];", "int here = block[k] + 0 * data[n];", "Uninitialized value written to global memory", "scan_blocks")]
+
+LATTICE = {
+    "title": "glued", "method": "lattice", "time": {"end": 1, "scheme": "leapfrog"}, "gravity": [0, 0, -9.81],
+    "materials": {"steel": {"density": 7900, "young": 210e9, "poisson": 0.28, "damping": {"mass": 120, "link": 1e-8}},
+                  "glue": {"density": 1200, "young": 3e9, "poisson": 0.4, "strength": {"tension": 1, "shear": 1, "criterion": "sum"}}},
+    "bodies": [{"name": "left", "material": "steel", "cell": 0.01, "shape": {"box": {"min": [0, 0, 0], "max": [0.06, 0.02, 0.02]}},
+                "angular_velocity": [200, 100, -300]},
+               {"name": "right", "material": "glue", "cell": 0.01, "shape": {"box": {"min": [0.06, 0, 0], "max": [0.1, 0.02, 0.02]}},
+                "velocity": [3, -2, 1]}],
+    "boundaries": [{"where": {"box": {"min": [0, 0, 0], "max": [0.01, 0.02, 0.02]}}, "fix": ["x", "ry"]},
+                   {"where": {"box": {"min": [0.02, 0.02, 0], "max": [0.06, 0.02, 0.02]}}, "pressure": 1e5, "history": {"ramp": 1e-6}}],
+    "measure": [{"name": "energy", "every": 1, "energy": "all"}, {"name": "broken", "every": 1, "broken": "all"}],
+    "output": {"every": 0, "fields": ["von_mises", "broken"]}}
 
 
 class Oclgrind(parallel_runs.Case):
@@ -35,8 +50,7 @@ class Oclgrind(parallel_runs.Case):
             reports += path.read_text()
         return reports, parallel_runs.Run(out, run.returncode, run.stderr)
 
-    def is_clean(self, name, ranks, *args):
-        scene = self.scene(name)
+    def is_clean(self, scene, ranks, *args):
         alone = self.good_run(scene, 1, *args).record()
         reports, run = self.simulate(scene, ranks, *args)
         self.assertEqual((run.code, reports[:4000]), (0, ""), run.err)
@@ -47,7 +61,7 @@ class Oclgrind(parallel_runs.Case):
         return record
 
     def rebuilt(self, name, ranks):
-        record = self.is_clean(name, ranks)
+        record = self.is_clean(self.scene(name), ranks)
         self.assertEqual(record["rebuilds"], 2)
         if ranks > 1:
             self.assertGreater(record["migrations"], 0)
@@ -63,8 +77,24 @@ class Oclgrind(parallel_runs.Case):
 
     def test_long_rows(self):
         """Elements so fast that all of them may meet: rows that are searched twice and sorted by heap."""
-        record = self.is_clean("apart", 1, "--steps", "2", "--precision", "single", "--set", "elements.there.velocity=[8, 0, 0]")
+        record = self.is_clean(self.scene("apart"), 1, "--steps", "2", "--precision", "single", "--set", "elements.there.velocity=[8, 0, 0]")
         self.assertGreater(2 * record["interactions"] / record["elements"], 48)
+
+    def test_lattice_on_two_ranks(self):
+        """Every feature of the lattice but Runge-Kutta, and links that break at once: of the glue, and where it meets steel."""
+        path = os.path.join(self.dir, "lattice.yaml")
+        with open(path, "w") as file:
+            yaml.safe_dump(LATTICE, file)
+        record = self.is_clean(path, 2, "--steps", "3")
+        self.assertGreater(record["broken"]["tension"] + record["broken"]["shear"] + record["broken"]["bending"], 10)
+        self.assertEqual([name for name, value in record["features"].items() if not value], ["rk"])
+
+    def test_lattice_by_runge_kutta(self):
+        path = os.path.join(self.dir, "lattice.yaml")
+        with open(path, "w") as file:
+            yaml.safe_dump({**LATTICE, "time": {**LATTICE["time"], "scheme": "rk4"}}, file)
+        record = self.is_clean(path, 1, "--steps", "3")
+        self.assertGreater(record["broken"]["tension"] + record["broken"]["shear"] + record["broken"]["bending"], 10)
 
     def test_faults_are_found(self):
         kernels = os.path.join(self.dir, "kernels")
