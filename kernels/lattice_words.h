@@ -35,6 +35,7 @@
 #define ACCOUNT_WORK 10 /* these three 0 without WITH_ENERGY */
 #define ACCOUNT_LINKS 11
 #define ACCOUNT_MASS 12
-#define ACCOUNT_WIDTH 13
+#define ACCOUNT_RELEASED 13 /* 0 without WITH_ENERGY and WITH_BREAK */
+#define ACCOUNT_WIDTH 14
 
 #endif

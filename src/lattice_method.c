@@ -196,6 +196,7 @@ static void report_energy(struct sim *s, struct report *r, bool observed)
         if (by_work) {
             report_number(r, "link_damping", both[k]->links);
             report_number(r, "mass_damping", both[k]->mass);
+            report_number(r, "released", both[k]->released);
             report_number(r, "work", both[k]->work);
         }
         report_end(r);
