@@ -24,6 +24,8 @@ struct lattice_load {
     real traction;
     vec3 lower, upper; /* t.n of the lower and the upper faces */
     vec3 acceleration, v, w;
+    vec3 now_v, now_w;
+    real rate;
 };
 
 /* A row of loads, from device or host memory. */
@@ -41,6 +43,9 @@ struct lattice_load {
         (l).acceleration = LATTICE_VEC(p, LOAD_ACCELERATION);                                                                                        \
         (l).v = LATTICE_VEC(p, LOAD_VELOCITY);                                                                                                       \
         (l).w = LATTICE_VEC(p, LOAD_VELOCITY + 3);                                                                                                   \
+        (l).now_v = LATTICE_VEC(p, LOAD_NOW);                                                                                                        \
+        (l).now_w = LATTICE_VEC(p, LOAD_NOW + 3);                                                                                                    \
+        (l).rate = (p)[LOAD_RATE];                                                                                                                   \
     } while (0)
 /* A row of the table of links. */
 #define LATTICE_CONSTANTS(k, p)                                                                                                                      \

@@ -15,6 +15,7 @@ struct lattice_view {
     size_t plane, begin;       /* begin: of this run */
     size_t base[4];            /* of the runs at -y, +y, -z, +z */
     int n_kind;
+    int still;               /* 1: links without their dashpots */
     struct link_constants k; /* of a run whose cells and neighbours are of one kind */
 };
 
@@ -71,6 +72,7 @@ LAW struct lattice_view lattice_view_of(__global const preal *x, __global const 
     s.base[2] = (size_t)base[2 * n_run + run];
     s.base[3] = (size_t)base[3 * n_run + run];
     s.n_kind = n_kind;
+    s.still = 0;
     LATTICE_CONSTANTS(s.k, row);
     return s;
 }
@@ -81,7 +83,7 @@ LAW struct link_share lattice_face(int face, int mixed, struct lattice_view s, s
     size_t i = s.begin + l, j = lattice_beside(s, face, l);
     struct link_cell other = lattice_cell(s, j);
     real p_me = 0, p_other = 0;
-    if (WITH_LINK_DAMPING) other = lattice_moving(s, j, other);
+    if (WITH_LINK_DAMPING && !s.still) other = lattice_moving(s, j, other);
     if (WITH_VOLUME) {
         p_me = s.p[i];
         p_other = s.p[j];
@@ -89,12 +91,23 @@ LAW struct link_share lattice_face(int face, int mixed, struct lattice_view s, s
     return lattice_link(face, LATTICE_LINKS(word) >> face & 1, me, other, lattice_constants(s, face, mixed, word, j), p_me, p_other);
 }
 
+/* The six links in the order of the mask. */
+LAW struct link_share lattice_links(int mixed, struct lattice_view s, size_t l, int word, struct link_cell me)
+{
+    struct link_share sum = lattice_face(0, mixed, s, l, word, me);
+    sum = lattice_add(sum, lattice_face(1, mixed, s, l, word, me));
+    sum = lattice_add(sum, lattice_face(2, mixed, s, l, word, me));
+    sum = lattice_add(sum, lattice_face(3, mixed, s, l, word, me));
+    sum = lattice_add(sum, lattice_face(4, mixed, s, l, word, me));
+    return lattice_add(sum, lattice_face(5, mixed, s, l, word, me));
+}
+
 /* What the link over a face adds to the sum of stretches of the cell [m]. eta of that cell; 0: without damping. */
 LAW real lattice_part(int face, int mixed, struct lattice_view s, size_t l, int word, struct link_cell me, real eta)
 {
     size_t j = lattice_beside(s, face, l);
     struct link_cell other = lattice_cell(s, j);
-    if (WITH_LINK_DAMPING) other = lattice_moving(s, j, other);
+    if (WITH_LINK_DAMPING && !s.still) other = lattice_moving(s, j, other);
     return lattice_stretch(face, word >> face & 1, me, other, lattice_constants(s, face, mixed, word, j), eta);
 }
 

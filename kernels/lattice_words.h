@@ -14,12 +14,14 @@
 
 #define LATTICE_X(with_turn) ((with_turn) ? 7 : 6)
 #define LATTICE_V 6
+#define LATTICE_LEDGER 3 /* planes of double, WITH_ENERGY: struct lattice_ledger */
 
 /* Rows of tables of real. */
 #define LINK_WIDTH 8  /* kn ks kt kb r_i r_j h eta; row: kind of the lower cell times n_kind + kind of the higher */
 #define CELL_WIDTH 8  /* 1/m [1/kg], 1/J [1/(kg m2)], lambda [Pa], 1/(4 G) [1/Pa], 1/(2 h) [1/m], eta [s], alpha [1/s], h^3 [m3]; row: kind */
 #define BREAK_WIDTH 5 /* one over the limits of normal and shear force, bending and twisting moment, criterion (law_break.h); row: as links */
-#define KICK_WIDTH 4  /* f g of the kick that ends a step, f g of the one that begins the next; row: kind */
+#define KICK_WIDTH 12 /* the kick that ends a step, the one that begins the next, KICK_PART each; row: kind */
+#define KICK_PART 6   /* f g, and s G A C that WITH_ENERGY alone reads (lattice_work.h) */
 /* Info of a run: its kind, and this if its cells have to be looked at one by one. */
 #define RUN_MIXED 256
 
@@ -30,6 +32,10 @@
 #define ACCOUNT_ELASTIC 3
 #define ACCOUNT_MOMENTUM 4
 #define ACCOUNT_ANGULAR 7
-#define ACCOUNT_WIDTH 10
+#define ACCOUNT_WORK 10 /* these three 0 without WITH_ENERGY */
+#define ACCOUNT_LINKS 11
+#define ACCOUNT_MASS 12
+#define ACCOUNT_RELEASED 13 /* 0 without WITH_ENERGY and WITH_BREAK */
+#define ACCOUNT_WIDTH 14
 
 #endif

@@ -2,36 +2,10 @@
  *
  * lint: WITH_SUMS needs fp64
  * lint: WITH_SHEAR_APART requires WITH_VOLUME */
-#include "lattice_account.h"
-#include "lattice_view.h"
+#include "link_elastic.h"
 #include "sums_group.h"
 
 #if WITH_SUMS
-LAW real account_face(int face, struct lattice_view s, size_t l, int word, struct link_cell me)
-{
-    size_t j = lattice_beside(s, face, l);
-    return account_link(face, LATTICE_LINKS(word) >> face & 1, me, lattice_cell(s, j), lattice_constants(s, face, 1, word, j));
-}
-
-/* Links and volume of a cell [J]. */
-LAW void account_elastic(struct lattice_view s, size_t l, int word, struct link_cell c, struct lattice_load load, __global const real *cell,
-                         real *links, real *volume)
-{
-    struct volume_constants k;
-    real sum = 0;
-    *links = account_face(0, s, l, word, c) + account_face(1, s, l, word, c) + account_face(2, s, l, word, c);
-    *links += account_face(3, s, l, word, c) + account_face(4, s, l, word, c) + account_face(5, s, l, word, c);
-    if (WITH_VOLUME) {
-        sum = lattice_part(0, 1, s, l, word, c, 0) + lattice_part(1, 1, s, l, word, c, 0) + lattice_part(2, 1, s, l, word, c, 0);
-        sum += lattice_part(3, 1, s, l, word, c, 0) + lattice_part(4, 1, s, l, word, c, 0) + lattice_part(5, 1, s, l, word, c, 0);
-    }
-    k.lambda = cell[2];
-    k.per_4g = cell[3];
-    k.per_2h = cell[4];
-    k.volume = cell[7];
-    *volume = account_volume(sum, load, word & 63, k);
-}
-
 /* The cells of n runs of `list`. place [n_run][4]: where the centre of a run's first cell was [m], and the edge of its cells [m]. */
 __kernel __attribute__((reqd_work_group_size(SUMS_GROUP, 1, 1)))
 void link_energies(int n, __global const int *list, __global const int *info, __global const int *base, __global const int *word, int n_run,
@@ -39,6 +13,12 @@ void link_energies(int n, __global const int *list, __global const int *info, __
                  __global const real *cell,
 #if WITH_LOADS
                  __global const int *row, __global const real *rows, int at_rows,
+#endif
+#if WITH_ENERGY
+                 __global const double *ledger,
+#endif
+#if WITH_ENERGY && WITH_BREAK
+                 __global const int *fresh, __global const double *released, double after,
 #endif
                  __global const double *place, double gravity_x, double gravity_y, double gravity_z, __global long *partial)
 {
@@ -62,9 +42,19 @@ void link_energies(int n, __global const int *list, __global const int *info, __
         __global const real *load_row = rows + at_rows + (size_t)row[i] * LOAD_WIDTH;
         LATTICE_LOAD(load, load_row);
 #endif
-        real links, volume;
-        account_elastic(s, l, word_i, c, load, constants, &links, &volume);
+        real links, volume, faces;
+        account_elastic(s, l, word_i, c, load, constants, &links, &volume, &faces);
         account_cell(c, links, volume, at, (double)constants[0], (double)constants[1], gravity, term);
+        term[ACCOUNT_WORK] = term[ACCOUNT_LINKS] = term[ACCOUNT_MASS] = 0.0;
+#if WITH_ENERGY
+        term[ACCOUNT_WORK] = ledger[i] + (double)faces + account_held(c, word_i, 1.0 / (double)constants[0], 1.0 / (double)constants[1]);
+        term[ACCOUNT_LINKS] = ledger[s.plane + i];
+        term[ACCOUNT_MASS] = ledger[2 * s.plane + i];
+#endif
+        term[ACCOUNT_RELEASED] = 0.0;
+#if WITH_ENERGY && WITH_BREAK
+        term[ACCOUNT_RELEASED] = released[i] + (fresh[i] ? after * account_release(s, l, word_i, fresh[i], load, constants) : 0.0);
+#endif
         for (int k = 0; k < ACCOUNT_WIDTH; k++) sums_add(&sum[k], term[k]);
     }
     for (int k = 0; k < ACCOUNT_WIDTH; k++) sums_put(part, k, sum[k]);

@@ -5,25 +5,19 @@
  * velocities stay in place unless links are damped. A run of one material without loads or fixed DOF needs no table per cell and has a loop of its
  * own.
  *
+ * lint: WITH_ENERGY needs fp64
  * lint: WITH_SHEAR_APART requires WITH_VOLUME */
-#include "lattice_view.h"
+#include "link_account.h"
 
 /* Accelerations of a cell, and what holds it. */
 struct lattice_pull {
     vec3 a, b;               /* [m/s2] [rad/s2] */
-    vec3 given_v, given_w;   /* of fixed DOF [m/s] [rad/s] */
+    vec3 given_v, given_w;   /* of fixed DOF: during the drift, or at the next stage [m/s] [rad/s] */
+    vec3 now_v, now_w;       /* of fixed DOF at this stage; Runge-Kutta's alone */
+#if WITH_ENERGY
+    struct lattice_effort effort;
+#endif
 };
-
-/* The six links in the order of the mask. */
-LAW struct link_share lattice_links(int mixed, struct lattice_view s, size_t l, int word, struct link_cell me)
-{
-    struct link_share sum = lattice_face(0, mixed, s, l, word, me);
-    sum = lattice_add(sum, lattice_face(1, mixed, s, l, word, me));
-    sum = lattice_add(sum, lattice_face(2, mixed, s, l, word, me));
-    sum = lattice_add(sum, lattice_face(3, mixed, s, l, word, me));
-    sum = lattice_add(sum, lattice_face(4, mixed, s, l, word, me));
-    return lattice_add(sum, lattice_face(5, mixed, s, l, word, me));
-}
 
 LAW struct lattice_pull lattice_pull_of(int mixed, struct lattice_view s, size_t l, int word, struct link_cell me, __global const real *cell,
                                         __global const int *row, __global const real *rows, vec3 gravity)
@@ -31,7 +25,10 @@ LAW struct lattice_pull lattice_pull_of(int mixed, struct lattice_view s, size_t
     struct lattice_pull r;
     struct link_share sum = lattice_links(mixed, s, l, word, me);
     vec3 add = gravity;
-    r.given_v = r.given_w = v3(0, 0, 0);
+    r.given_v = r.given_w = r.now_v = r.now_w = v3(0, 0, 0);
+#if WITH_ENERGY
+    r.effort = lattice_effort_of(mixed, s, l, word, me, sum, cell, row, rows, gravity);
+#endif
     if (WITH_LOADS && mixed) {
         struct lattice_load load;
         __global const real *at = rows + (size_t)row[s.begin + l] * LOAD_WIDTH;
@@ -40,6 +37,8 @@ LAW struct lattice_pull lattice_pull_of(int mixed, struct lattice_view s, size_t
         add = WITH_GRAVITY ? v3_add(gravity, load.acceleration) : load.acceleration;
         r.given_v = load.v;
         r.given_w = load.w;
+        r.now_v = load.now_v;
+        r.now_w = load.now_w;
     }
     r.a = WITH_GRAVITY || (WITH_LOADS && mixed) ? v3_fma(cell[0], sum.force, add) : v3_scale(cell[0], sum.force);
     r.b = v3_scale(cell[1], sum.torque);
@@ -74,9 +73,9 @@ LAW void lattice_keep(__global preal *x, __global real *v, size_t plane, size_t 
 LAW struct link_cell lattice_move(int mixed, struct link_cell c, struct lattice_pull pull, int word, __global const real *kick, preal drift)
 {
     c.v = lattice_kick(c.v, pull.a, kick[0], kick[1]);
-    c.v = lattice_kick(c.v, pull.a, kick[2], kick[3]);
+    c.v = lattice_kick(c.v, pull.a, kick[KICK_PART], kick[KICK_PART + 1]);
     c.w = lattice_kick(c.w, pull.b, kick[0], kick[1]);
-    c.w = lattice_kick(c.w, pull.b, kick[2], kick[3]);
+    c.w = lattice_kick(c.w, pull.b, kick[KICK_PART], kick[KICK_PART + 1]);
     if ((WITH_FIX || WITH_LOADS) && mixed) {
         c.v = lattice_hold(c.v, word, WORD_FIX, pull.given_v);
         c.w = lattice_hold(c.w, word, WORD_FIX + 3, pull.given_w);
@@ -124,8 +123,8 @@ LAW struct link_cell lattice_advance(int mixed, struct link_cell c, struct link_
     vec3 zero = v3(0, 0, 0);
     int held = (WITH_FIX || WITH_LOADS) && mixed;
     if (held) {
-        c.v = lattice_hold(c.v, word, WORD_FIX, pull.given_v);
-        c.w = lattice_hold(c.w, word, WORD_FIX + 3, pull.given_w);
+        c.v = lattice_hold(c.v, word, WORD_FIX, pull.now_v);
+        c.w = lattice_hold(c.w, word, WORD_FIX + 3, pull.now_w);
     }
     if (WITH_MASS_DAMPING) {
         pull.a = v3_fma(-alpha, c.v, pull.a);
@@ -145,6 +144,17 @@ LAW struct link_cell lattice_advance(int mixed, struct link_cell c, struct link_
 #endif
 
 /* One cell of the run. */
+#if WITH_ENERGY && WITH_RK
+#define ACCOUNT(mixed, kind)                                                                                                                         \
+    link_account_stage(pull.effort, c, pull.a, pull.b, (mixed) ? word_i : 0, cell + (kind)*CELL_WIDTH, stage, speed, sum_v + LATTICE_V * s.plane,    \
+                       ledger, s.plane, i)
+#elif WITH_ENERGY
+#define ACCOUNT(mixed, kind)                                                                                                                         \
+    link_account_kicks(pull.effort, c, pull.a, pull.b, (mixed) ? word_i : 0, cell + (kind)*CELL_WIDTH, kick + (kind)*KICK_WIDTH, count, ledger,      \
+                       s.plane, i)
+#else
+#define ACCOUNT(mixed, kind)
+#endif
 #if WITH_RK
 #define NEXT(mixed, kind)                                                                                                                            \
     struct lattice_view s0 = s;                                                                                                                      \
@@ -169,6 +179,7 @@ LAW struct link_cell lattice_advance(int mixed, struct link_cell c, struct link_
         int word_i = word[i];                                                                                                                        \
         struct link_cell c = lattice_moving(s, i, lattice_cell(s, i));                                                                               \
         struct lattice_pull pull = lattice_pull_of(mixed, s, l, word_i, c, cell + (kind)*CELL_WIDTH, ROWS, gravity);                                 \
+        ACCOUNT(mixed, kind);                                                                                                                        \
         NEXT(mixed, kind);                                                                                                                           \
         lattice_keep(x + x_out, v + v_out, s.plane, i, c);                                                                                           \
     }
@@ -188,6 +199,14 @@ void link_force(int first, int n, __global const int *list, __global const int *
 #endif
 #if WITH_LOADS
                 __global const int *row, __global const real *rows, int at_rows,
+#endif
+#if WITH_ENERGY
+                __global double *restrict ledger,
+#if WITH_RK
+                real c_before, real c_own,
+#else
+                int count,
+#endif
 #endif
 #if WITH_RK
                 long start_x, long start_v, __global preal *restrict sum_x, __global real *restrict sum_v, preal c_sum_v, preal c_sum_a,
@@ -210,6 +229,9 @@ void link_force(int first, int n, __global const int *list, __global const int *
 #endif
 #if WITH_RK
     struct lattice_stage stage = {c_sum_v, c_sum_a, c_next_v, c_next_a, c_next_turn, c_sum_turn, c_sum_k, c_next_k, is_first, is_last, is_nystrom};
+#if WITH_ENERGY
+    struct lattice_speed speed = {c_before, c_own};
+#endif
 #else
     __global const real *kick = kick_table + at_kick;
 #endif

@@ -1,13 +1,16 @@
 /* The volumetric pass: p = lambda Th of each cell, from its six links. Runs as link_force.cl. Ghosts that owned cells are linked to get theirs here
- * too, from their own neighbours, in the same order as on the rank that owns them. */
+ * too, from their own neighbours, in the same order as on the rank that owns them. The balance of energy needs p without dashpots beside it, in a
+ * second plane. */
 #include "lattice_view.h"
 
-LAW real lattice_pressure(int mixed, struct lattice_view s, size_t l, int word, __global const real *cell, real traction)
+/* still: without dashpots. */
+LAW real lattice_pressure(int still, int mixed, struct lattice_view s, size_t l, int word, __global const real *cell, real traction)
 {
     struct volume_constants c;
     struct link_cell me = lattice_cell(s, s.begin + l);
     real eta = cell[5], sum;
-    if (WITH_LINK_DAMPING) me = lattice_moving(s, s.begin + l, me);
+    s.still = still;
+    if (WITH_LINK_DAMPING && !still) me = lattice_moving(s, s.begin + l, me);
     sum = lattice_part(0, mixed, s, l, word, me, eta);
     sum += lattice_part(1, mixed, s, l, word, me, eta);
     sum += lattice_part(2, mixed, s, l, word, me, eta);
@@ -43,10 +46,16 @@ void link_volume(int first, int n, __global const int *list, __global const int 
         BATCH_VECTOR
         FOR_BATCH (l, BATCH) {
             size_t i = s.begin + l;
-            p[i] = lattice_pressure(1, s, l, word[i], cell + LATTICE_KIND(word[i]) * CELL_WIDTH, (real)TRACTION(i));
+            __global const real *at = cell + LATTICE_KIND(word[i]) * CELL_WIDTH;
+            p[i] = lattice_pressure(0, 1, s, l, word[i], at, (real)TRACTION(i));
+            if (WITH_ENERGY && WITH_LINK_DAMPING) p[s.plane + i] = lattice_pressure(1, 1, s, l, word[i], at, (real)TRACTION(i));
         }
     } else {
         BATCH_VECTOR
-        FOR_BATCH (l, BATCH) p[s.begin + l] = lattice_pressure(0, s, l, word[s.begin + l], cell + kind * CELL_WIDTH, (real)0);
+        FOR_BATCH (l, BATCH) {
+            size_t i = s.begin + l;
+            p[i] = lattice_pressure(0, 0, s, l, word[i], cell + kind * CELL_WIDTH, (real)0);
+            if (WITH_ENERGY && WITH_LINK_DAMPING) p[s.plane + i] = lattice_pressure(1, 0, s, l, word[i], cell + kind * CELL_WIDTH, (real)0);
+        }
     }
 }

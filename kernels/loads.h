@@ -10,7 +10,9 @@ enum {
     LOAD_ACCELERATION = 16, /* 3: not divided by mass [m/s2] */
     LOAD_NORMAL = 19,       /* 6: what LOAD_TRACTION sums, t.n of each face in the order of the mask of links [Pa]; only what is measured reads it */
     LOAD_VELOCITY = 25,     /* 6: v and w of DOF that are prescribed (their CELL_FIX bit is set) [m/s] [rad/s] */
-    LOAD_WIDTH = 31
+    LOAD_NOW = 31,          /* 6: the same at the time of the forces */
+    LOAD_RATE = 37,         /* 1: change of LOAD_TRACTION, for the balance of energy [Pa/s] */
+    LOAD_WIDTH = 38
 };
 
 #endif

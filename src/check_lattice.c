@@ -55,6 +55,13 @@ static void print_boundaries(const struct scene *scene, const struct lattice_cel
         (long long)n_loaded, cells->loads->n_row - 1);
 }
 
+static bool may_break(const struct scene *scene)
+{
+    for (int k = 0; k < scene->n_material; k++)
+        if (scene->material[k].has_strength) return true;
+    return false;
+}
+
 static void print_time(const struct scene *scene, const struct lattice_cells *cells)
 {
     static const char *const scheme[] = {"leapfrog", "rk4", "rkn4", "pefrl", "vefrl"};
@@ -69,6 +76,7 @@ static void print_time(const struct scene *scene, const struct lattice_cells *ce
     printf(", by %s", scheme[time->scheme]);
     if (scene->lattice.relax) printf(", or until %g of the largest force is left", scene->lattice.tolerance);
     printf("\n    limit %.4g s, from the largest frequency, %.4g Hz\n", limit, largest / (2 * M_PI));
+    if (may_break(scene)) printf("    links that break do not raise it\n");
     if (zeta > 0) printf("    damping of links is %.4g of critical there%s", zeta, factor < free ? "" : " and costs no time step\n");
     if (zeta > 0 && factor < free) printf(", and makes the step %.3g times smaller than without\n", free / factor);
     if (dt > limit) printf("    the step is over it: a run %s\n", time->allow_unstable ? "goes on, as asked for" : "is refused");

@@ -25,6 +25,15 @@ struct energy {
     bool wraps;                /* some period has a component of gravity along it */
 };
 
+void energy_require_double(struct sim *s)
+{
+    if (s->dev->fp64) return;
+    fail_stop_together(EXIT_DEVICE,
+        "%s: a measure of energy needs double precision, which the device %s does not have; take another device, or "
+        "leave the measure out",
+        s->scene->path, s->dev->name);
+}
+
 struct energy *energy_create(struct sim *s)
 {
     static const char *const source[] = {"sums.cl", NULL};
@@ -33,14 +42,8 @@ struct energy *energy_create(struct sim *s)
     buffer_init(&e->gone_id, "gone elements");
     buffer_init(&e->gone_wall, "gone walls");
     for (int a = 0; a < 3; a++) e->wraps |= s->features.periodic[a] && fabs(s->scene->gravity[a]) > 0;
-    if (!s->dev->fp64) {
-        if (s->features.energy)
-            fail_stop_together(EXIT_DEVICE,
-                "%s: a measure of energy needs double precision, which the device %s does not have; take another device, or "
-                "leave the measure out",
-                s->scene->path, s->dev->name);
-        return e;
-    }
+    if (s->features.energy) energy_require_double(s);
+    if (!s->dev->fp64) return e;
     char *body = features_options(&s->features, FEATURES_BODY), *options = fail_format("%s -DWITH_SUMS=1", body);
     e->program = program_build(s->dev, s->comm, "sums", options, source);
     free(body);

@@ -25,8 +25,9 @@ struct energy_sums {
     double momentum[3], angular[3];                       /* [kg m/s]; [J s] about the origin of coordinates */
 };
 
-/* Collective. Before or after the lists; needs s->dev, features, scene, domain, wall_contacts. Energy is measured, but the device has no double
- * precision: message, exit code 4. */
+/* A measure of energy on a device without double precision: message, exit code 4. Collective. */
+void energy_require_double(struct sim *s);
+/* Collective. Before or after the lists; needs s->dev, features, scene, domain, wall_contacts. */
 struct energy *energy_create(struct sim *s);
 void energy_free(struct device *dev, struct energy *e); /* NULL is fine */
 

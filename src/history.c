@@ -42,6 +42,21 @@ double history_at(const struct history *h, double t)
     return 1;
 }
 
+static double table_slope(const struct history *h, int k)
+{
+    return k <= 0 || k >= h->n_point ? 0 : (h->point[k][1] - h->point[k - 1][1]) / (h->point[k][0] - h->point[k - 1][0]);
+}
+
+double history_rate(const struct history *h, double t)
+{
+    if (h->kind == HISTORY_RAMP) return (t >= 0 && t < h->ramp ? 0.5 / h->ramp : 0) + (t > 0 && t <= h->ramp ? 0.5 / h->ramp : 0);
+    if (h->kind == HISTORY_SINE) return two_pi * h->frequency * cos(two_pi * h->frequency * t + h->phase);
+    if (h->kind != HISTORY_TABLE) return 0;
+    int k = point_after(h, t);
+    bool is_corner = k > 0 && !(h->point[k - 1][0] < t);
+    return is_corner ? 0.5 * (table_slope(h, k - 1) + table_slope(h, k)) : table_slope(h, k);
+}
+
 /* Straight from one corner to the next: on each piece the mean is the value at its middle. */
 static double mean_of_pieces(const struct history *h, double from, double to)
 {

@@ -10,6 +10,8 @@
 #include "scene.h"
 
 double history_at(const struct history *history, double t);
+/* Change with time [1/s]; at a corner the mean of both sides. */
+double history_rate(const struct history *history, double t);
 /* Mean over [from, to], or [to, from]; the value where both are one. */
 double history_mean(const struct history *history, double from, double to);
 

@@ -73,12 +73,13 @@ static void put_table(struct lattice *l, struct buffer *buffer, const char *name
 static void create_state(struct lattice *l)
 {
     size_t n = (size_t)l->layout->plane, n_x = LATTICE_X(l->features.turn), n_set = l->features.rk ? 3 : 2;
-    struct buffer *all[] = {&l->x, &l->v, &l->sum_x, &l->sum_v, &l->pressure};
-    static const char *const name[] = {"lattice x", "lattice v", "lattice sums of x", "lattice sums of v", "lattice pressure"};
+    size_t n_last = l->features.energy && l->scheme->is_nystrom ? LATTICE_V : 0, n_p = l->features.energy && l->features.link_damping ? 2 : 1;
+    struct buffer *all[] = {&l->x, &l->v, &l->sum_x, &l->sum_v, &l->pressure, &l->ledger};
+    static const char *const name[] = {"lattice x", "lattice v", "lattice sums of x", "lattice sums of v", "lattice pressure", "lattice ledger"};
     const size_t bytes[] = {n_set * n_x * n * lattice_x_bytes(l), n_set * LATTICE_V * n * lattice_v_bytes(l),
-        l->features.rk ? 9 * n * lattice_x_bytes(l) : 0, l->features.rk ? LATTICE_V * n * lattice_v_bytes(l) : 0,
-        l->features.volume ? n * lattice_v_bytes(l) : 0};
-    for (int k = 0; k < 5; k++) {
+        l->features.rk ? 9 * n * lattice_x_bytes(l) : 0, l->features.rk ? (LATTICE_V + n_last) * n * lattice_v_bytes(l) : 0,
+        l->features.volume ? n_p * n * lattice_v_bytes(l) : 0, l->features.energy ? LATTICE_LEDGER * n * sizeof(double) : 0};
+    for (int k = 0; k < 6; k++) {
         buffer_init(all[k], name[k]);
         buffer_reserve(l->dev, all[k], bytes[k]);
         buffer_zero(l->dev, all[k]);
@@ -105,9 +106,10 @@ static void create_tables(struct lattice *l, const struct lattice_cells *cells)
 struct launch *lattice_launch(struct lattice *l, const struct program *program, const char *kernel, const struct buffer *list)
 {
     struct launch *k = launch_create(program, kernel);
-    static const char *const name[] = {"info", "base", "word", "x", "v", "link", "cell", "p", "row", "rows", "sum_x", "sum_v", "kick_table", NULL};
-    const struct buffer *buffer[] = {
-        &l->info, &l->base, &l->word, &l->x, &l->v, &l->link, &l->cell, &l->pressure, &l->row, &l->rows.buffer, &l->sum_x, &l->sum_v, &l->kick};
+    static const char *const name[] = {
+        "info", "base", "word", "x", "v", "link", "cell", "p", "row", "rows", "sum_x", "sum_v", "kick_table", "ledger", NULL};
+    const struct buffer *buffer[] = {&l->info, &l->base, &l->word, &l->x, &l->v, &l->link, &l->cell, &l->pressure, &l->row, &l->rows.buffer,
+        &l->sum_x, &l->sum_v, &l->kick, &l->ledger};
     static const char *const gravity[] = {"gravity_x", "gravity_y", "gravity_z"};
     int64_t plane = l->layout->plane;
     launch_set_batch(k, (size_t)l->layout->run);
@@ -186,8 +188,8 @@ void lattice_free(struct lattice *l)
 {
     if (!l) return;
     device_finish(l->dev);
-    struct buffer *all[] = {&l->x, &l->v, &l->sum_x, &l->sum_v, &l->pressure, &l->word, &l->info, &l->base, &l->force_list, &l->volume_list, &l->row,
-        &l->link, &l->cell, &l->kick};
+    struct buffer *all[] = {&l->x, &l->v, &l->sum_x, &l->sum_v, &l->pressure, &l->ledger, &l->word, &l->info, &l->base, &l->force_list,
+        &l->volume_list, &l->row, &l->link, &l->cell, &l->kick};
     lattice_halo_free(l->dev, l->halo);
     lattice_break_free(l->breakage);
     lattice_rows_free(l);

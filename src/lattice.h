@@ -27,11 +27,14 @@ struct lattice {
     struct lattice_break *breakage; /* NULL where nothing breaks */
     struct buffer x, v;             /* sets of planes: kernels/lattice_state.h */
     struct buffer sum_x, sum_v, pressure;
+    struct buffer
+        ledger; /* features.energy: [LATTICE_LEDGER][plane] double, of the observed step and, but for the kick that began, of what goes on */
     struct buffer word, info, base, force_list, volume_list, row, link, cell, kick;
     int x_set, v_set;           /* where the state is that goes on */
     int x_observed, v_observed; /* where that of the observed step is */
     int64_t step;
     bool started; /* the kick that ends a step is due */
+    bool counted; /* that kick is in the ledger already */
     struct {
         struct buffer buffer;
         double *value, *last;      /* [n_row][LOAD_WIDTH]: asked for, sent last */

@@ -10,7 +10,46 @@ struct lattice_break {
     struct program *program;
     struct launch *judge, *part;
     struct buffer limit, fate;
+    struct program *program_release; /* NULL: released energy is not asked for */
+    struct launch *release;
+    struct buffer fresh, released;
 };
+
+/* Shares of the links' energy that are released at the step's start and at its end (kernels/link_release.cl). */
+static double share_before(const struct lattice *l)
+{
+    return l->scheme->ends_with_kick ? l->scheme->op[0].end : 0;
+}
+
+static void create_release(struct lattice_break *b)
+{
+    static const char *const source[] = {"link_release.cl", NULL};
+    struct lattice *l = b->l;
+    size_t n = (size_t)l->layout->plane;
+    buffer_init(&b->fresh, "lattice fresh breaks");
+    buffer_init(&b->released, "lattice released");
+    if (!l->features.energy) return;
+    char *text = lattice_features_options(&l->features, l->layout->run), *options = fail_format("%s -DWITH_SUMS=1", text);
+    b->program_release = program_build(l->dev, l->comm, "release", options, source);
+    free(text);
+    free(options);
+    buffer_reserve(l->dev, &b->fresh, n * sizeof(int32_t));
+    buffer_zero(l->dev, &b->fresh);
+    buffer_reserve(l->dev, &b->released, n * sizeof(double));
+    buffer_zero(l->dev, &b->released);
+    b->release = lattice_launch(l, b->program_release, "link_release", &l->force_list);
+    launch_bind_buffer(b->release, "fate", &b->fate);
+    launch_set_real(b->release, "before", share_before(l));
+    launch_set_int(b->release, "n", l->layout->n_force);
+    lattice_break_bind(b, b->release);
+}
+
+void lattice_break_bind(const struct lattice_break *b, struct launch *launch)
+{
+    launch_bind_buffer(launch, "fresh", &b->fresh);
+    launch_bind_buffer(launch, "released", &b->released);
+    launch_set_real(launch, "after", 1 - share_before(b->l));
+}
 
 struct lattice_break *lattice_break_create(struct lattice *l, const struct lattice_cells *cells)
 {
@@ -36,6 +75,7 @@ struct lattice_break *lattice_break_create(struct lattice *l, const struct latti
     b->part = lattice_launch(l, b->program, "link_part", &l->force_list);
     launch_bind_buffer(b->part, "fate", &b->fate);
     launch_set_int(b->part, "n", l->layout->n_force);
+    create_release(b);
     return b;
 }
 
@@ -45,7 +85,11 @@ void lattice_break_free(struct lattice_break *b)
     device_finish(b->l->dev);
     launch_free(b->judge);
     launch_free(b->part);
+    launch_free(b->release);
     program_free(b->program);
+    program_free(b->program_release);
+    buffer_free(b->l->dev, &b->fresh);
+    buffer_free(b->l->dev, &b->released);
     buffer_free(b->l->dev, &b->limit);
     buffer_free(b->l->dev, &b->fate);
     free(b);
@@ -57,6 +101,10 @@ void lattice_break_judge(struct lattice_break *b, int64_t x_in, int64_t v_in)
     launch_set_long(b->judge, "x_in", x_in);
     launch_set_long(b->judge, "v_in", v_in);
     launch_run(b->judge, b->l->dev->compute, (int64_t)(c->n_run - 2) * c->run, 0, NULL, NULL);
+    if (!b->release) return;
+    launch_set_long(b->release, "x_in", x_in);
+    launch_set_long(b->release, "v_in", v_in);
+    launch_run(b->release, b->l->dev->compute, (int64_t)c->n_force * c->run, 0, NULL, NULL);
 }
 
 void lattice_break_part(struct lattice_break *b)

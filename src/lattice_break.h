@@ -20,6 +20,9 @@ void lattice_break_free(struct lattice_break *b); /* NULL is fine */
 void lattice_break_judge(struct lattice_break *b, int64_t x_in, int64_t v_in);
 void lattice_break_part(struct lattice_break *b);
 
+/* Has a kernel of the account of energy know what has been released (kernels/link_release.cl); features.energy only. */
+void lattice_break_bind(const struct lattice_break *b, struct launch *launch);
+
 /* Names of the modes, and how many links of all ranks broke in each so far. Collective. */
 const char *lattice_break_name(int mode);
 void lattice_break_count(const struct lattice_break *b, int64_t count[LATTICE_BREAK_MODES]);

@@ -5,6 +5,7 @@
 #include "../kernels/lattice_words.h"
 #include "fail.h"
 #include "integer_sums.h"
+#include "lattice_break.h"
 #include "lattice_observed.h"
 
 struct lattice_account {
@@ -12,6 +13,7 @@ struct lattice_account {
     struct program *program; /* NULL: no double precision */
     struct launch *launch;
     struct buffer place, partial;
+    double work, links, mass; /* when it was opened [J] */
 };
 
 /* Where the centre of each run's first cell is, there or not, and the edge of its cells: [n_run][4] [m]. From the grid alone, so the same on any
@@ -55,7 +57,13 @@ struct lattice_account *lattice_energy_create(struct lattice *l, const struct la
     launch_bind_buffer(a->launch, "place", &a->place);
     launch_bind_buffer(a->launch, "partial", &a->partial);
     launch_set_int(a->launch, "n", l->layout->n_force);
+    if (l->features.energy && l->breakage) lattice_break_bind(l->breakage, a->launch);
     for (int k = 0; k < 3; k++) launch_set_real(a->launch, gravity[k], l->options.gravity[k]);
+    struct lattice_energy start;
+    lattice_energy_now(a, &start);
+    a->work = start.work;
+    a->links = start.links;
+    a->mass = start.mass;
     return a;
 }
 
@@ -80,8 +88,20 @@ void lattice_energy_now(struct lattice_account *a, struct lattice_energy *out)
         integer_sums_run(a->l->dev, a->launch, &a->partial, ACCOUNT_WIDTH, sum);
     }
     for (int k = 0; k < ACCOUNT_WIDTH; k++) sum[k].bad += !a->program;
+    for (int k = ACCOUNT_WORK; k <= ACCOUNT_RELEASED; k++) sum[k].bad += !a->l->features.energy;
     integer_sums_all(a->l->comm, sum, ACCOUNT_WIDTH, v);
-    *out = (struct lattice_energy){v[ACCOUNT_KINETIC], v[ACCOUNT_ROTATIONAL], v[ACCOUNT_GRAVITY], v[ACCOUNT_ELASTIC],
+    *out = (struct lattice_energy){v[ACCOUNT_KINETIC], v[ACCOUNT_ROTATIONAL], v[ACCOUNT_GRAVITY], v[ACCOUNT_ELASTIC], v[ACCOUNT_WORK] - a->work,
+        v[ACCOUNT_LINKS] - a->links, v[ACCOUNT_MASS] - a->mass, v[ACCOUNT_RELEASED],
         {v[ACCOUNT_MOMENTUM], v[ACCOUNT_MOMENTUM + 1], v[ACCOUNT_MOMENTUM + 2]},
         {v[ACCOUNT_ANGULAR], v[ACCOUNT_ANGULAR + 1], v[ACCOUNT_ANGULAR + 2]}};
+}
+
+static double account(const struct lattice_energy *e)
+{
+    return e->kinetic + e->rotational + e->gravity + e->elastic + e->links + e->mass + e->released - e->work;
+}
+
+double lattice_energy_balance(const struct lattice_energy *start, const struct lattice_energy *now)
+{
+    return account(now) - account(start);
 }

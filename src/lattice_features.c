@@ -27,6 +27,7 @@ struct lattice_features lattice_features_of(const struct lattice_cells *cells, c
     f.kinds = cells->n_kind > 1;
     f.rk = lattice_schemes_table(o->scheme)->is_rk;
     f.breakage = o->strength != NULL;
+    f.energy = o->energy;
     return f;
 }
 
@@ -37,7 +38,7 @@ static const struct {
     const char *name;
     size_t at;
 } feature_table[] = {FEATURE(turn), FEATURE(volume), FEATURE(shear_apart), FEATURE(twist_apart), FEATURE(link_damping), FEATURE(mass_damping),
-    FEATURE(fix), FEATURE(loads), FEATURE(gravity), FEATURE(kinds), FEATURE(rk), FEATURE(breakage), {NULL, 0}};
+    FEATURE(fix), FEATURE(loads), FEATURE(gravity), FEATURE(kinds), FEATURE(rk), FEATURE(energy), FEATURE(breakage), {NULL, 0}};
 
 const char *lattice_features_name(int i)
 {
@@ -53,9 +54,9 @@ char *lattice_features_options(const struct lattice_features *f, int run)
 {
     return fail_format("-DREAL_IS_FLOAT=%d -DPOSITION_IS_FLOAT=%d -DWITH_TURN=%d -DWITH_VOLUME=%d -DWITH_SHEAR_APART=%d -DWITH_TWIST_APART=%d "
                        "-DWITH_LINK_DAMPING=%d -DWITH_MASS_DAMPING=%d -DWITH_FIX=%d -DWITH_LOADS=%d -DWITH_GRAVITY=%d -DWITH_KINDS=%d -DWITH_RK=%d "
-                       "-DWITH_BREAK=%d -DBATCH=%d -DBATCH_WIDTH=%d",
+                       "-DWITH_ENERGY=%d -DWITH_BREAK=%d -DBATCH=%d -DBATCH_WIDTH=%d",
         f->real_is_float, f->position_is_float, f->turn, f->volume, f->shear_apart, f->twist_apart, f->link_damping, f->mass_damping, f->fix,
-        f->loads, f->gravity, f->kinds, f->rk, f->breakage, run, f->real_is_float && f->position_is_float ? 16 : 8);
+        f->loads, f->gravity, f->kinds, f->rk, f->energy, f->breakage, run, f->real_is_float && f->position_is_float ? 16 : 8);
 }
 
 double *lattice_features_links(const struct lattice_cells *cells, const struct lattice_options *o)
@@ -99,11 +100,26 @@ double *lattice_features_cells(const struct lattice_cells *cells, const struct l
     return table;
 }
 
-/* f and g of a kick over `time` [s]. */
-static void kick(double alpha, double time, double *row)
+/* A kick over s [s], as kernels/lattice_work.h: with z = alpha s
+ *     f = e^-z, g = (1 - f)/alpha, G = (s - g)/alpha, A = (1 - f^2)/2, C = alpha times the integral of g^2 = (s - 2 g + A/alpha)/alpha
+ * G and C by their series for small z, where the differences cancel: what is left out is below 1e-16. */
+static void kick(double alpha, double s, double *row)
 {
-    row[0] = alpha > 0 ? exp(-alpha * time) : 1;
-    row[1] = alpha > 0 ? -expm1(-alpha * time) / alpha : time;
+    double z = alpha * s, g = alpha > 0 ? -expm1(-z) / alpha : s, a = alpha > 0 ? -0.5 * expm1(-2 * z) : 0, whole = 0, lost = 0;
+    if (fabs(z) > 0.25) {
+        whole = (s - g) / alpha;
+        lost = (s - 2 * g + a / alpha) / alpha;
+    } else { /* G = s^2 sum of (-z)^k/(k + 2)!, C = z s^2 sum of (-z)^k (2^(k+2) - 2)/(k + 3)! */
+        double term = 0.5, two = 4;
+        for (int k = 0; k < 20; k++) {
+            whole += s * s * term;
+            lost += z * s * s * term * (two - 2) / (k + 3);
+            term *= -z / (k + 3);
+            two *= 2;
+        }
+    }
+    const double value[KICK_PART] = {alpha > 0 ? exp(-z) : 1, g, s, whole, a, lost};
+    for (int k = 0; k < KICK_PART; k++) row[k] = value[k];
 }
 
 double *lattice_features_kicks(const struct lattice_cells *cells, const struct lattice_options *o)
@@ -115,7 +131,7 @@ double *lattice_features_kicks(const struct lattice_cells *cells, const struct l
             const struct lattice_op *op = &t->op[k < t->n ? k : 0];
             double alpha = o->alpha ? o->alpha[cells->kind[i].material] : 0, *row = table + (k * cells->n_kind + i) * KICK_WIDTH;
             kick(alpha, k == t->n + 1 ? 0 : op->end * o->dt, row);
-            kick(alpha, k == t->n ? 0 : op->begin * o->dt, row + 2);
+            kick(alpha, k == t->n ? 0 : op->begin * o->dt, row + KICK_PART);
         }
     return table;
 }

@@ -13,7 +13,8 @@ typedef void lattice_rows_at(void *context, double t, double from, double to, do
 struct lattice_options {
     double dt; /* [s] */
     enum lattice_scheme scheme;
-    bool turn; /* any rotation, else small ones */
+    bool turn;   /* any rotation, else small ones */
+    bool energy; /* keep the account of work and losses; for devices with double precision */
     bool real_is_float, position_is_float;
     double gravity[3]; /* [m/s2] */
     enum link_set set;
@@ -34,8 +35,9 @@ struct lattice_features {
     bool shear_apart, twist_apart; /* links with kn != ks, kt != kb */
     bool link_damping, mass_damping;
     bool fix, loads, gravity;
-    bool kinds; /* more than one */
-    bool rk;    /* stages of a Runge-Kutta scheme */
+    bool kinds;  /* more than one */
+    bool rk;     /* stages of a Runge-Kutta scheme */
+    bool energy; /* work and losses are accounted for */
     bool breakage;
 };
 

@@ -58,6 +58,7 @@ struct lattice_input *lattice_input_create(const struct scene *scene, const stru
         input->strength[k] = strength_of(scene, cells, k);
         if (isfinite(input->strength[k].tension) || isfinite(input->strength[k].shear)) input->options.strength = input->strength;
     }
+    for (int m = 0; m < scene->n_measure; m++) input->options.energy |= scene->measure[m].kind == MEASURE_ENERGY;
     memcpy(input->options.gravity, scene->gravity, sizeof input->options.gravity);
     return input;
 }

@@ -229,6 +229,7 @@ void lattice_loads_create(const struct scene *scene, struct lattice_cells *cells
     cells->row = fail_alloc(n * sizeof *cells->row);
     cells->loads = fail_alloc(sizeof *cells->loads);
     cells->loads->at = fail_alloc((size_t)scene->n_boundary * sizeof(double));
+    cells->loads->rate = fail_alloc((size_t)scene->n_boundary * sizeof(double));
     cells->loads->mean = fail_alloc((size_t)scene->n_boundary * sizeof(double));
     for (int g = 0; g < cells->n_grid; g++) add_node(&b, (struct node){.parent = -1, .grid = g});
     for (int64_t i = 0; i < cells->n; i++) cells->row[i] = cells->kind[cells->kind_of[i]].grid;
@@ -258,6 +259,7 @@ void lattice_loads_free(struct lattice_loads *loads)
     free(loads->boundary);
     free(loads->value);
     free(loads->at);
+    free(loads->rate);
     free(loads->mean);
     free(loads);
 }
@@ -267,13 +269,19 @@ void lattice_loads_at(struct lattice_loads *loads, const struct scene *scene, do
     memset(rows, 0, (size_t)loads->n_row * LOAD_WIDTH * sizeof *rows);
     for (int k = 0; k < scene->n_boundary; k++) {
         loads->at[k] = history_at(&scene->boundary[k].history, t);
+        loads->rate[k] = history_rate(&scene->boundary[k].history, t);
         loads->mean[k] = history_mean(&scene->boundary[k].history, from, to);
     }
     for (int r = 0; r < loads->n_row; r++)
         for (int term = loads->begin[r]; term < loads->begin[r + 1]; term++) {
             const double *value = loads->value[term];
-            double *row = rows + (size_t)r * LOAD_WIDTH, at = loads->at[loads->boundary[term]], mean = loads->mean[loads->boundary[term]];
-            for (int c = 0; c < LOAD_VELOCITY; c++) row[c] += at * value[c];
-            for (int c = LOAD_VELOCITY; c < LOAD_WIDTH; c++) row[c] += mean * value[c];
+            int k = loads->boundary[term];
+            double *row = rows + (size_t)r * LOAD_WIDTH;
+            for (int c = 0; c < LOAD_VELOCITY; c++) row[c] += loads->at[k] * value[c];
+            for (int c = 0; c < LOAD_NOW - LOAD_VELOCITY; c++) {
+                row[LOAD_VELOCITY + c] += loads->mean[k] * value[LOAD_VELOCITY + c];
+                row[LOAD_NOW + c] += loads->at[k] * value[LOAD_VELOCITY + c];
+            }
+            row[LOAD_RATE] += loads->rate[k] * value[LOAD_TRACTION];
         }
 }

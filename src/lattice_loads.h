@@ -17,10 +17,11 @@ struct lattice_loads {
     int *begin;                  /* [n_row + 1] terms of each row */
     int *boundary;               /* [n_term] index into scene.boundary */
     double (*value)[LOAD_WIDTH]; /* [n_term] at history 1 */
-    double *at, *mean;           /* [scene.n_boundary] histories, as asked for last */
+    double *at, *rate, *mean;    /* [scene.n_boundary] histories, as asked for last */
 };
 
-/* rows [n_row][LOAD_WIDTH]: forces and accelerations at time t; velocities as means over the drift [from, to], values where from is to. */
+/* rows [n_row][LOAD_WIDTH]: forces and accelerations at time t; velocities as means over the drift [from, to], values where from is to. LOAD_NOW and
+ * LOAD_RATE: at t. */
 void lattice_loads_at(struct lattice_loads *loads, const struct scene *scene, double t, double from, double to, double *rows);
 
 #endif

@@ -10,7 +10,8 @@ int lattice_method_measure_columns(enum measure_kind kind, const struct series_c
 {
     static const struct series_column probe[] = {{"x", "m"}, {"y", "m"}, {"z", "m"}, {"u_x", "m"}, {"u_y", "m"}, {"u_z", "m"}, {"v_x", "m/s"},
         {"v_y", "m/s"}, {"v_z", "m/s"}, {"w_x", "rad/s"}, {"w_y", "rad/s"}, {"w_z", "rad/s"}};
-    static const struct series_column energy[] = {{"kinetic", "J"}, {"rotational", "J"}, {"gravity", "J"}, {"elastic", "J"}};
+    static const struct series_column energy[] = {{"kinetic", "J"}, {"rotational", "J"}, {"gravity", "J"}, {"elastic", "J"}, {"link_damping", "J"},
+        {"mass_damping", "J"}, {"released", "J"}, {"work", "J"}, {"balance", "J"}};
     static const struct series_column momentum[] = {
         {"p_x", "N s"}, {"p_y", "N s"}, {"p_z", "N s"}, {"l_x", "N m s"}, {"l_y", "N m s"}, {"l_z", "N m s"}};
     static const struct series_column peak[] = {{"von_mises", "Pa"}, {"x", "m"}, {"y", "m"}, {"z", "m"}};
@@ -20,7 +21,7 @@ int lattice_method_measure_columns(enum measure_kind kind, const struct series_c
         return LATTICE_BREAK_MODES;
     }
     *column = kind == MEASURE_ENERGY ? energy : kind == MEASURE_MOMENTUM ? momentum : kind == MEASURE_STRESS_MAX ? peak : probe;
-    return kind == MEASURE_ENERGY || kind == MEASURE_STRESS_MAX ? 4 : kind == MEASURE_MOMENTUM ? 6 : 12;
+    return kind == MEASURE_ENERGY ? 9 : kind == MEASURE_STRESS_MAX ? 4 : kind == MEASURE_MOMENTUM ? 6 : 12;
 }
 
 /* The cell whose centre at the start is nearest, the first of several; the same on every rank. */
@@ -88,7 +89,8 @@ void lattice_method_measure(struct sim *s, const bool *due, double (*value)[MEAS
     struct lattice_energy e = {.kinetic = 0};
     if (by_energy) lattice_energy_now(s->solid->account, &e);
     struct lattice_state *t = by_cell ? lattice_state_create(s) : NULL;
-    const double energy[] = {e.kinetic, e.rotational, e.gravity, e.elastic};
+    const double energy[] = {
+        e.kinetic, e.rotational, e.gravity, e.elastic, e.links, e.mass, e.released, e.work, lattice_energy_balance(&s->solid->energy_start, &e)};
     for (int i = 0; i < s->scene->n_measure; i++) {
         const struct measure *what = &s->scene->measure[i];
         if (!due[i]) continue;

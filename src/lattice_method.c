@@ -64,6 +64,7 @@ static void setup(struct sim *s)
 {
     struct lattice_run *r = s->solid;
     log_print(s->log, "%lld cells in %d %s", (long long)s->n_first, s->scene->n_body, s->scene->n_body == 1 ? "body" : "bodies");
+    if (r->input->options.energy) energy_require_double(s);
     r->lattice = lattice_create(s->dev, s->comm, r->cells, &r->input->options);
     r->account = lattice_energy_create(r->lattice, r->cells);
     if (wants_stress(s->scene)) r->stress = lattice_stress_create(r->lattice, s->scene->lattice.stress == STRESS_EXTRAPOLATED);
@@ -184,6 +185,7 @@ static void report_energy(struct sim *s, struct report *r, bool observed)
     struct lattice_energy now = s->solid->energy_start;
     const struct lattice_energy *both[] = {&s->solid->energy_start, &now};
     static const char *const name[] = {"start", "end"};
+    bool by_work = s->solid->lattice->features.energy;
     if (observed) lattice_energy_now(s->solid->account, &now);
     report_begin(r, "energy");
     for (int k = 0; k < 2; k++) {
@@ -192,8 +194,15 @@ static void report_energy(struct sim *s, struct report *r, bool observed)
         report_number(r, "rotational", both[k]->rotational);
         report_number(r, "gravity", both[k]->gravity);
         report_number(r, "elastic", both[k]->elastic);
+        if (by_work) {
+            report_number(r, "link_damping", both[k]->links);
+            report_number(r, "mass_damping", both[k]->mass);
+            report_number(r, "released", both[k]->released);
+            report_number(r, "work", both[k]->work);
+        }
         report_end(r);
     }
+    report_number(r, "balance_error", by_work && observed ? lattice_energy_balance(&s->solid->energy_start, &now) : (double)NAN);
     report_end(r);
     report_numbers(r, "momentum", now.momentum, 3);
     report_broken(s, r);

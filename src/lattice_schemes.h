@@ -19,6 +19,7 @@ struct lattice_rk {
     double at; /* time of the stage */
     double sum_v, sum_a, next_v, next_a, sum_k, next_k;
     double next_turn, sum_turn; /* intervals of commutators */
+    double before, own;         /* what the balance of energy adds to v: struct lattice_speed of kernels/lattice_work.h */
 };
 
 struct lattice_table {

@@ -61,6 +61,9 @@ static void part(struct lattice *l)
     if (l->breakage) lattice_break_part(l->breakage);
 }
 
+/* Kicks that an evaluation enters in the ledger (kernels/lattice_work.h). */
+enum { COUNT_END = 1, COUNT_BEGIN = 2 };
+
 /* One evaluation of a splitting. k: row of the table of kicks; the first evaluation's drift is left out if only its first kick is meant. */
 static void split(struct lattice *l, int k, const struct lattice_op *op, double at, bool observe)
 {
@@ -68,6 +71,8 @@ static void split(struct lattice *l, int k, const struct lattice_op *op, double 
     int x_out = 1 - l->x_set, v_out = observe || l->features.link_damping ? 1 - l->v_set : l->v_set;
     launch_set_int(l->force, "at_kick", k * l->n_kind * KICK_WIDTH);
     launch_set_real(l->force, "drift", drift);
+    if (l->features.energy) launch_set_int(l->force, "count", observe ? COUNT_END : k == 0 && l->counted ? COUNT_BEGIN : COUNT_END | COUNT_BEGIN);
+    l->counted = observe;
     lattice_rows_send(l, t, t, t + drift);
     evaluate(l, l->x_set, x_out, l->v_set, v_out);
     l->x_observed = l->x_set;
@@ -121,9 +126,14 @@ static void rk_step(struct lattice *l)
         launch_set_real(l->force, "c_sum_turn", c->sum_turn * dt);
         launch_set_real(l->force, "c_sum_k", c->sum_k * dt);
         launch_set_real(l->force, "c_next_k", c->next_k * dt);
+        if (l->features.energy) {
+            launch_set_real(l->force, "c_before", c->before * dt);
+            launch_set_real(l->force, "c_own", c->own * dt);
+        }
         launch_set_int(l->force, "is_first", k == 0);
         launch_set_int(l->force, "is_last", k == s->n - 1);
-        lattice_rows_send(l, t, t, t);
+        double next = ((double)l->step + (k + 1 < s->n ? s->rk[k + 1].at : 1)) * dt; /* neighbours read velocities as this stage leaves them */
+        lattice_rows_send(l, t, next, next);
         evaluate(l, in, out, in, out);
         if (k == 0) judge(l, in, in);
     }

@@ -3,6 +3,7 @@
 
 Arguments: name of the test, democles, mpirun, its arguments."""
 import csv
+import json
 import os
 import pathlib
 import sys
@@ -32,6 +33,25 @@ domain: {domain}
 measure:
   - {{name: energy, every: {every} s, energy: all}}
 """
+LATTICE = """
+method: lattice
+time: {{end: 2e-3 s, step: {dt} s, scheme: {scheme}}}
+gravity: [0, -9.81, 0]
+materials:
+  base: {{density: 1000, young: 1e9, poisson: 0.3, damping: {{mass: 100, link: 1e-6}}}}
+  tip: {{density: 700, young: 5e8, poisson: 0.2}}
+bodies:
+  - {{name: base, material: base, cell: 10 mm, shape: {{box: {{min: [0, 0, 0], max: [0.2, 0.03, 0.02]}}}}}}
+  - {{name: tip, material: tip, cell: 10 mm, shape: {{box: {{min: [0.2, 0, 0], max: [0.3, 0.03, 0.02]}}}}}}
+boundaries:
+  - {{where: {{box: {{min: [-1, -1, -1], max: [0.01, 1, 1]}}}}, velocity: [0, 0.5, 0], history: {{sine: {{frequency: 600 Hz}}}}}}
+  - {{where: {{box: {{min: [-1, -1, -1], max: [0.01, 1, 1]}}}}, fix: [rx, ry, rz]}}
+  - {{where: {{box: {{min: [0.3, -1, -1], max: [1, 1, 1]}}}}, force: [500, -100, 50], history: {{sine: {{frequency: 400 Hz}}}}}}
+  - {{where: {{box: {{min: [0.1, 0.03, -1], max: [0.2, 1, 1]}}}}, pressure: 2e5, history: {{sine: {{frequency: 500 Hz}}}}}}
+  - {{where: {{body: tip}}, acceleration: [0, 0, 300]}}
+measure:
+  - {{name: energy, every: 2e-4 s, energy: all}}
+"""
 FRICTION = "tangential: {stiffness_ratio: 0.8, friction: 0.3, damping_ratio: 0.2}"
 ALL = FRICTION + "\n    rolling: {model: epsd, friction: 0.05, damping_ratio: 0.3}\n    binding: {force: 0.2}"
 LOSSES = ["dashpot_normal", "dashpot_tangential", "sliding", "rolling", "bonds"]
@@ -41,8 +61,8 @@ class Budget(cli.Case):
     def budget(self, ranks, **keys):
         """Columns by name, the same for all numbers of ranks."""
         keys = {"dt": 2e-5, "end": 0.06, "every": 0.002, "law": FRICTION, "gravity": "[0, 0, -9.81]", "n": 20, "domain": "{}",
-                "region": "{min: [0, 0, 0.005], max: [0.04, 0.04, 0.2]}", **keys}
-        self.put("scene.yaml", SCENE.format(**keys))
+                "region": "{min: [0, 0, 0.005], max: [0.04, 0.04, 0.2]}", "scene": SCENE, **keys}
+        self.put("scene.yaml", keys["scene"].format(**keys))
         texts = []
         for n in ranks:
             run = self.call("run", "scene.yaml", "-o", "out", "--force", ranks=n)
@@ -107,6 +127,24 @@ class Budget(cli.Case):
         self.closes(e, 3e-3)
         mass = 20 * 2500 * 3.14159265 / 6 * 1e-6
         self.assertGreater(e["gravity"][0] - e["gravity"][-1], mass * (6 * 0.08 + 7.5 * 0.01))  # further than two periods
+
+    def test_lattice(self):
+        """A bar that is shaken at its base, pulled, pressed, pushed and damped: the balance closes at second order, and is that of the record."""
+        coarse, fine = (self.budget([1, 3] if dt == 1e-6 else [1], scene=LATTICE, dt=dt, scheme="leapfrog") for dt in (2e-6, 1e-6))
+        self.assertEqual(list(fine), ["time", "kinetic", "rotational", "gravity", "elastic", "link_damping", "mass_damping", "work", "balance"])
+        work, off = max(map(abs, fine["work"])), [max(map(abs, e["balance"])) for e in (coarse, fine)]
+        self.assertGreater(off[0] / off[1], 3.5)
+        self.assertLess(off[0] / off[1], 4.5)
+        self.assertLess(off[1], 1e-3 * work)
+        for name in ("link_damping", "mass_damping"):
+            self.assertEqual(fine[name], sorted(fine[name]), name)
+            self.assertGreater(fine[name][-1], 1e-3 * work, name)
+        self.assertEqual(fine["work"][0], 0)
+        with open(os.path.join(self.dir, "out", "run.json")) as file:
+            record = json.load(file)
+        self.assertEqual(record["energy"]["balance_error"], fine["balance"][-1])
+        self.assertEqual(record["energy"]["end"]["work"], fine["work"][-1])
+        self.assertEqual(record["features"]["energy"], 1)
 
 
 if __name__ == "__main__":

@@ -34,6 +34,10 @@ struct host *host_create(const struct lattice_cells *cells, const struct lattice
     h->p = fail_alloc(n * sizeof *h->p);
     h->links = fail_alloc(n * sizeof *h->links);
     h->fate = fail_alloc(n * sizeof *h->fate);
+    h->p_still = fail_alloc(n * sizeof *h->p_still);
+    h->ledger = fail_alloc(n * sizeof *h->ledger);
+    h->last_a = fail_alloc(n * sizeof *h->last_a);
+    h->last_b = fail_alloc(n * sizeof *h->last_b);
     h->link = reals(lattice_features_links(cells, options), (int64_t)k * k * LINK_WIDTH);
     h->cell = reals(lattice_features_cells(cells, options), (int64_t)k * CELL_WIDTH);
     if (!h->scheme->is_rk) h->kick = reals(lattice_features_kicks(cells, options), (int64_t)(h->scheme->n + 2) * k * KICK_WIDTH);
@@ -55,8 +59,8 @@ struct host *host_create(const struct lattice_cells *cells, const struct lattice
 
 void host_free(struct host *h)
 {
-    void *all[] = {
-        h->neighbour, h->now, h->next, h->start, h->sums, h->p, h->links, h->fate, h->limit, h->link, h->cell, h->kick, h->rows, h->rows_double};
+    void *all[] = {h->neighbour, h->now, h->next, h->start, h->sums, h->p, h->p_still, h->links, h->fate, h->ledger, h->last_a, h->last_b, h->limit,
+        h->link, h->cell, h->kick, h->rows, h->rows_double};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) free(all[k]);
     free(h);
 }
@@ -84,46 +88,90 @@ static struct lattice_load load_of(const struct host *h, int64_t i)
     return load;
 }
 
-static void pressures(struct host *h)
+/* The cell without its velocities. */
+static struct link_cell at_rest(struct link_cell c)
+{
+    c.v = c.w = v3(0, 0, 0);
+    return c;
+}
+
+static void pressures_in(const struct host *h, bool still, real *p)
 {
     for (int64_t i = 0; i < h->n; i++) {
         const real *cell = h->cell + h->cells->kind_of[i] * CELL_WIDTH;
+        struct link_cell me = still ? at_rest(h->now[i]) : h->now[i];
         real sum = 0;
         for (int f = 0; f < 6; f++) {
             int64_t j = h->neighbour[i][f];
-            if (j >= 0) sum += lattice_stretch(f, 1, h->now[i], h->now[j], f % 2 ? constants(h, i, j) : constants(h, j, i), cell[5]);
+            struct link_cell other = j < 0 ? me : still ? at_rest(h->now[j]) : h->now[j];
+            if (j >= 0) sum += lattice_stretch(f, 1, me, other, f % 2 ? constants(h, i, j) : constants(h, j, i), cell[5]);
             else sum += 0;
         }
         struct volume_constants c = {cell[2], cell[3], cell[4], cell[7]};
-        h->p[i] = c.lambda * volume_strain(sum, WITH_LOADS ? load_of(h, i).traction : (real)0, h->links[i], c);
+        p[i] = c.lambda * volume_strain(sum, WITH_LOADS ? load_of(h, i).traction : (real)0, h->links[i], c);
     }
 }
 
+static void pressures(struct host *h)
+{
+    if (!WITH_VOLUME) return;
+    pressures_in(h, false, h->p);
+    pressures_in(h, true, h->p_still);
+}
+
 struct pull {
-    vec3 a, b, given_v, given_w;
+    vec3 a, b, given_v, given_w, now_v, now_w;
+    struct lattice_effort effort;
 };
 
-static struct link_share share_of(const struct host *h, int64_t i, int face)
+static const struct link_share none;
+static const struct lattice_effort none_acts;
+
+static struct link_share share_of(const struct host *h, int64_t i, int face, bool still)
 {
     int64_t j = h->neighbour[i][face];
-    struct link_share none = {{0, 0, 0}, {0, 0, 0}};
     if (j < 0) return none;
-    return lattice_link(face, 1, h->now[i], h->now[j], face % 2 ? constants(h, i, j) : constants(h, j, i), h->p[i], h->p[j]);
+    const real *p = still ? h->p_still : h->p;
+    struct link_constants k = face % 2 ? constants(h, i, j) : constants(h, j, i);
+    return lattice_link(face, 1, still ? at_rest(h->now[i]) : h->now[i], still ? at_rest(h->now[j]) : h->now[j], k, p[i], p[j]);
+}
+
+static struct link_share links_of(const struct host *h, int64_t i, bool still)
+{
+    struct link_share sum = none;
+    for (int f = 0; f < 6; f++) sum = lattice_add(sum, share_of(h, i, f, still));
+    return sum;
+}
+
+static struct lattice_effort effort_of(const struct host *h, int64_t i, vec3 gravity)
+{
+    const real *cell = h->cell + h->cells->kind_of[i] * CELL_WIDTH;
+    struct lattice_effort e = {.links = links_of(h, i, false), .still = links_of(h, i, true), .weight = gravity};
+    if (!WITH_LOADS) return e;
+    struct lattice_load load = load_of(h, i);
+    e.loads = lattice_load_add(none, h->now[i], load);
+    e.added = load.acceleration;
+    e.v = load.now_v;
+    e.w = load.now_w;
+    if (WITH_VOLUME) e.face = cell[7] * cell[3] * h->p_still[i] * load.rate;
+    return e;
 }
 
 static struct pull pull_of(const struct host *h, int64_t i)
 {
-    struct link_share sum = {{0, 0, 0}, {0, 0, 0}};
-    struct pull r = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    struct link_share sum = links_of(h, i, false);
+    struct pull r = {.effort = none_acts};
     const real *cell = h->cell + h->cells->kind_of[i] * CELL_WIDTH;
-    for (int f = 0; f < 6; f++) sum = lattice_add(sum, share_of(h, i, f));
     vec3 add = v3((real)h->options.gravity[0], (real)h->options.gravity[1], (real)h->options.gravity[2]);
+    if (WITH_ENERGY) r.effort = effort_of(h, i, add);
     if (WITH_LOADS) {
         struct lattice_load load = load_of(h, i);
         sum = lattice_load_add(sum, h->now[i], load);
         add = v3_add(add, load.acceleration);
         r.given_v = load.v;
         r.given_w = load.w;
+        r.now_v = load.now_v;
+        r.now_w = load.now_w;
     }
     r.a = WITH_LOADS || WITH_GRAVITY ? v3_fma(cell[0], sum.force, add) : v3_scale(cell[0], sum.force);
     r.b = v3_scale(cell[1], sum.torque);
@@ -136,16 +184,22 @@ static void hold(const struct host *h, int64_t i, struct link_cell *c, vec3 v, v
     c->w = lattice_hold(c->w, h->cells->bits[i], WORD_FIX + 3, w);
 }
 
-/* The kicks of row k, and a drift over `drift` s unless it is 0. */
-static void split(const struct host *h, int k, double drift, struct link_cell *to)
+/* The kicks of row k, counted as bits of `count` say, and a drift over `drift` s unless it is 0. */
+static void split(struct host *h, int k, double drift, int count, struct link_cell *to)
 {
     for (int64_t i = 0; i < h->n; i++) {
         const real *kick = h->kick + (k * h->cells->n_kind + h->cells->kind_of[i]) * KICK_WIDTH;
         struct pull r = pull_of(h, i);
         struct link_cell c = h->now[i];
-        for (int part = 0; part < 4; part += 2) {
-            c.v = lattice_kick(c.v, r.a, kick[part], kick[part + 1]);
-            c.w = lattice_kick(c.w, r.b, kick[part], kick[part + 1]);
+        const real *cell = h->cell + h->cells->kind_of[i] * CELL_WIDTH;
+        struct lattice_kick part[2];
+        LATTICE_KICK(part[0], kick);
+        LATTICE_KICK(part[1], kick + KICK_PART);
+        h->ledger[i] = lattice_work_split(h->ledger[i], r.effort, c, r.a, r.b, part[0], part[1], h->cells->bits[i], (double)cell[6],
+            1 / (double)cell[0], 1 / (double)cell[1], count);
+        for (int n = 0; n < 2; n++) {
+            c.v = lattice_kick(c.v, r.a, part[n].f, part[n].g);
+            c.w = lattice_kick(c.w, r.b, part[n].f, part[n].g);
         }
         hold(h, i, &c, r.given_v, r.given_w);
         to[i] = fabs(drift) > 0 ? lattice_drift(c, (preal)drift) : c;
@@ -196,9 +250,10 @@ static void split_step(struct host *h)
         const struct lattice_op *op = &h->scheme->op[k];
         double t = ((double)h->step + at) * dt;
         load_rows(h, t, t, t + op->drift * dt);
-        if (WITH_VOLUME) pressures(h);
+        pressures(h);
         if (k == 0 && h->scheme->ends_with_kick) judge(h);
-        split(h, k == 0 && h->scheme->ends_with_kick && !h->started ? h->scheme->n + 1 : k, op->drift * dt, h->next);
+        split(h, k == 0 && h->scheme->ends_with_kick && !h->started ? h->scheme->n + 1 : k, op->drift * dt, k == 0 && h->counted ? 2 : 3, h->next);
+        h->counted = false;
         memcpy(h->now, h->next, (size_t)h->n * sizeof *h->now);
         at += op->drift;
     }
@@ -215,21 +270,36 @@ static struct lattice_stage stage_of(const struct host *h, int k)
         h->scheme->is_nystrom};
 }
 
+/* The stage's part in the ledger. */
+static void enter(struct host *h, int64_t i, struct link_cell c, const struct pull *r, int k)
+{
+    const struct lattice_rk *of = &h->scheme->rk[k];
+    const real *cell = h->cell + h->cells->kind_of[i] * CELL_WIDTH;
+    struct lattice_speed speed = {(real)(of->before * h->options.dt), (real)(of->own * h->options.dt)};
+    if (h->scheme->is_nystrom) c = lattice_speed_of(c, r->a, r->b, h->last_a[i], h->last_b[i], speed, k == 0);
+    h->last_a[i] = r->a;
+    h->last_b[i] = r->b;
+    h->ledger[i] = lattice_work_stage(h->ledger[i], r->effort, c, h->cells->bits[i], (double)cell[6], 1 / (double)cell[0], 1 / (double)cell[1],
+        (double)(real)(of->sum_k * h->options.dt));
+}
+
 static void rk_step(struct host *h)
 {
     memcpy(h->start, h->now, (size_t)h->n * sizeof *h->now);
     for (int k = 0; k < h->scheme->n; k++) {
         struct lattice_stage stage = stage_of(h, k);
         double t = ((double)h->step + h->scheme->rk[k].at) * h->options.dt;
-        load_rows(h, t, t, t);
-        if (WITH_VOLUME) pressures(h);
+        double next = ((double)h->step + (k + 1 < h->scheme->n ? h->scheme->rk[k + 1].at : 1)) * h->options.dt;
+        load_rows(h, t, next, next);
+        pressures(h);
         if (k == 0) judge(h);
         for (int64_t i = 0; i < h->n; i++) {
             const real alpha = h->cell[h->cells->kind_of[i] * CELL_WIDTH + 6];
             struct pull r = pull_of(h, i);
             struct link_cell c = h->now[i];
             if (k == 0) h->sums[i] = lattice_sums_zero();
-            hold(h, i, &c, r.given_v, r.given_w);
+            enter(h, i, c, &r, k);
+            hold(h, i, &c, r.now_v, r.now_w);
             if (WITH_MASS_DAMPING) {
                 r.a = v3_fma(-alpha, c.v, r.a);
                 r.b = v3_fma(-alpha, c.w, r.b);
@@ -251,15 +321,16 @@ void host_step(struct host *h)
     h->step++;
 }
 
-void host_observe(const struct host *h, struct link_cell *seen)
+void host_observe(struct host *h, struct link_cell *seen)
 {
     memcpy(seen, h->now, (size_t)h->n * sizeof *seen);
     if (!h->scheme->ends_with_kick) return;
     struct host copy = *h;
     double t = (double)h->step * h->options.dt;
     load_rows(&copy, t, t, t);
-    if (WITH_VOLUME) pressures(&copy);
-    split(&copy, h->scheme->n, 0, seen);
+    pressures(&copy);
+    split(&copy, h->scheme->n, 0, 1, seen);
+    h->counted = true;
 }
 
 void host_stress(const struct host *h, struct link_cell *seen, bool extrapolate, struct stress *stress, real *von_mises)
@@ -268,12 +339,12 @@ void host_stress(const struct host *h, struct link_cell *seen, bool extrapolate,
     double t = (double)h->step * h->options.dt;
     copy.now = seen;
     load_rows(&copy, t, t, t);
-    if (WITH_VOLUME) pressures(&copy);
+    pressures(&copy);
     for (int64_t i = 0; i < h->n; i++) {
         struct lattice_through f;
         struct lattice_load load = {.traction = 0};
         vec3 *const force[6] = {&f.x[0], &f.x[1], &f.y[0], &f.y[1], &f.z[0], &f.z[1]};
-        for (int face = 0; face < 6; face++) *force[face] = share_of(&copy, i, face).force;
+        for (int face = 0; face < 6; face++) *force[face] = share_of(&copy, i, face, false).force;
         if (WITH_LOADS) load = load_of(&copy, i);
         real edge = h->link[h->cells->kind_of[i] * (h->cells->n_kind + 1) * LINK_WIDTH + 6];
         struct stress s = lattice_stress_of(f, seen[i], load, h->links[i], edge, extrapolate);

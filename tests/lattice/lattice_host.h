@@ -5,6 +5,7 @@
 #include "lattice_bodies.h"
 #include "lattice_fate.h"
 #include "lattice_through.h"
+#include "lattice_work.h"
 
 struct host {
     const struct lattice_cells *cells;
@@ -14,21 +15,23 @@ struct host {
     int64_t (*neighbour)[6];
     struct link_cell *now, *next, *start; /* [n] */
     struct lattice_sums *sums;            /* [n] */
-    real *p;                              /* [n] lambda Th */
+    real *p, *p_still;                    /* [n] lambda Th, and without dashpots */
+    struct lattice_ledger *ledger;        /* [n] */
+    vec3 *last_a, *last_b;                /* [n] accelerations of the stage before */
     int *links, *fate;                    /* [n] links left; kernels/lattice_words.h */
     real *link, *cell, *kick, *rows;      /* tables */
     real *limit;                          /* NULL: nothing breaks */
     double *rows_double;
     int64_t step;
-    bool started;
+    bool started, counted;
 };
 
 struct host *host_create(const struct lattice_cells *cells, const struct lattice_options *options);
 void host_free(struct host *h);
 /* As lattice_advance and lattice_resume, but for an observed step of a scheme that ends with a kick: `seen` [n] gets the state, what goes on
- * stays. */
+ * stays, but for the ledger. */
 void host_step(struct host *h);
-void host_observe(const struct host *h, struct link_cell *seen);
+void host_observe(struct host *h, struct link_cell *seen);
 /* Stress of all cells [n] in the state `seen` of this step. */
 void host_stress(const struct host *h, struct link_cell *seen, bool extrapolate, struct stress *stress, real *von_mises);
 

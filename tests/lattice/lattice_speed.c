@@ -1,4 +1,4 @@
-/* lattice_speed N [single] [turn] [nu] [scheme] [run]: cells per second of a block of N^3 cells on one rank, and of the memory (triad) in the same
+/* lattice_speed N [single] [turn] [nu] [scheme] [run] [energy]: cells per second of a block of N^3 cells on one rank, and of the memory (triad) in the same
  * run. In seconds that this process had a core, best of many short spans: others may use the machine. A tool, not a test. */
 #include <stdio.h>
 #include <stdlib.h>
@@ -47,6 +47,7 @@ int main(int argc, char **argv)
     o.turn = argc > 3 && !strcmp(argv[3], "turn");
     o.scheme = argc > 5 ? (enum lattice_scheme)atoi(argv[5]) : LATTICE_LEAPFROG;
     o.run = argc > 6 ? atoi(argv[6]) : 0;
+    o.energy = argc > 7;
     struct device *dev = device_open(comm, NULL, false, false);
     struct lattice_cells *cells = bodies_create(1, size, 0.01, 1, bodies_block);
     bodies_shake(cells, 1, 1);

@@ -5,6 +5,7 @@
 #include "fail.h"
 #include "lattice_bodies.h"
 #include "lattice_break.h"
+#include "lattice_energy.h"
 #include "tests/mpi_check.h"
 
 static struct comm *comm;
@@ -152,9 +153,56 @@ static void as_if_never_there(void **state)
     }
 }
 
+/* Balance of energy over the time 2 ms, over what is released: a block in two halves, pulled apart and moving, whose joint breaks at once. */
+static double unbalanced(enum lattice_scheme scheme, double dt, double *released)
+{
+    const int size[3] = {10, 8, 3};
+    const struct link_material material[2] = {{1000, 2e7, 0.3, 0}, {700, 1e7, 0.1, 0}};
+    const struct link_strength strength[2] = {{HUGE_VAL, HUGE_VAL, CRITERION_SUM}, {1e-30, 1e-30, CRITERION_SUM}};
+    struct lattice_cells *cells = bodies_create(1, size, 0.1, 2, bodies_block);
+    struct lattice_options o = {
+        .scheme = scheme, .dt = dt, .turn = true, .energy = true, .material = material, .n_material = 2, .n_row = 1, .strength = strength};
+    struct lattice_motion x = bodies_motion(cells->n);
+    struct lattice_energy start, now;
+    for (int64_t i = 0; i < cells->n; i++) {
+        cells->kind_of[i] = cells->at[i][0] == 5 && cells->at[i][1] < 5;
+        for (int a = 0; a < 3; a++) x.v[i][a] = x.u[i][0] = 0;
+        x.u[i][0] = 1e-3 * cells->at[i][0] + 2e-4 * sin(cells->at[i][1]);
+        x.u[i][1] = 3e-4 * cos(cells->at[i][0] + cells->at[i][2]);
+        x.v[i][0] = 0.5 * cells->at[i][0];
+    }
+    struct lattice *l = lattice_create(dev, comm, cells, &o);
+    lattice_write(l, &x);
+    struct lattice_account *account = lattice_energy_create(l, cells);
+    lattice_energy_now(account, &start);
+    int n = (int)lround(2e-3 / dt);
+    lattice_resume(l);
+    for (int step = 1; step <= n; step++) lattice_advance(l, step == n);
+    lattice_energy_now(account, &now);
+    *released = now.released;
+    lattice_energy_free(account);
+    lattice_free(l);
+    bodies_free(cells);
+    bodies_motion_free(&x);
+    return lattice_energy_balance(&start, &now) / now.released;
+}
+
+static void released(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 5; k++) {
+        double coarse_released, fine_released, coarse = unbalanced(schemes[k], 1e-4, &coarse_released);
+        double fine = unbalanced(schemes[k], 5e-5, &fine_released);
+        printf("%s: %g J released, balance off by %.3g and %.3g of it\n", lattice_schemes_table(schemes[k])->name, fine_released, coarse, fine);
+        assert_true(fine_released > 0);
+        assert_true(fabs(fine) < 0.3 * fabs(coarse) && fabs(fine) < 0.02);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(one_link), cmocka_unit_test(schemes_agree), cmocka_unit_test(as_if_never_there)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(one_link), cmocka_unit_test(schemes_agree), cmocka_unit_test(as_if_never_there), cmocka_unit_test(released)};
     comm = comm_create(NULL, NULL);
     dev = device_open(comm, NULL, true, false);
     int failed = cmocka_run_group_tests(tests, NULL, NULL);

@@ -49,6 +49,21 @@ static void sine(void **unused)
     assert_true(history_mean(&still, 0, 1) == sin(0.5));
 }
 
+/* The change over a time without corner in it is the mean of the rate. */
+static void rates(void **unused)
+{
+    (void)unused;
+    double point[3][2] = {{0.1, 2}, {0.2, -1}, {0.25, 4}};
+    const struct history constant = {.kind = HISTORY_CONSTANT}, ramp = {.kind = HISTORY_RAMP, .ramp = 0.4},
+                         sine = {.kind = HISTORY_SINE, .frequency = 3, .phase = 0.7}, table = {.kind = HISTORY_TABLE, .point = point, .n_point = 3};
+    assert_true(history_rate(&constant, 1) == 0);
+    assert_true(history_rate(&ramp, -1) == 0 && history_rate(&ramp, 0.2) == 2.5 && history_rate(&ramp, 9) == 0);
+    assert_true(history_rate(&ramp, 0) == 1.25 && history_rate(&ramp, 0.4) == 1.25);
+    assert_true(fabs(history_rate(&sine, 0.2) - 6 * M_PI * cos(6 * M_PI * 0.2 + 0.7)) < 1e-12);
+    assert_true(history_rate(&table, 0) == 0 && fabs(history_rate(&table, 0.15) + 30) < 1e-12 && fabs(history_rate(&table, 0.22) - 100) < 1e-11);
+    assert_true(history_rate(&table, 0.3) == 0 && fabs(history_rate(&table, 0.1) + 15) < 1e-12 && fabs(history_rate(&table, 0.2) - 35) < 1e-11);
+}
+
 /* Integral of the table from its first time to t: area of the trapezia. */
 static double table_integral(const struct history *h, double t)
 {
@@ -118,7 +133,7 @@ static void files(void **unused)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(constant), cmocka_unit_test(ramp), cmocka_unit_test(sine), cmocka_unit_test(table), cmocka_unit_test(files)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(constant), cmocka_unit_test(ramp), cmocka_unit_test(sine), cmocka_unit_test(rates),
+        cmocka_unit_test(table), cmocka_unit_test(files)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -158,6 +158,8 @@ static void histories(void **state)
     double(*rows)[LOAD_WIDTH] = rows_at(cut, 0.5, 1, 4);
     const double *first = rows[cut.cells->row[0]], *last = rows[cut.cells->row[cut.cells->n - 1]];
     assert_true(fabs(last[LOAD_FORCE] - 0.25) < 1e-15);
+    assert_true(fabs(last[LOAD_RATE] * 0.5 - last[LOAD_TRACTION]) < 1e-12 && last[LOAD_RATE] > 0); /* a ramp: value over time */
+    assert_true(first[LOAD_NOW + 2] == 8 * 0.25 && first[LOAD_NOW + 3] == 1 && first[LOAD_NOW] == 0);
     /* (integral of t/2 from 1 to 2) + 2 over 3 */
     assert_true(fabs(first[LOAD_VELOCITY + 2] - 8 * (0.75 + 2) / 3) < 1e-14 && first[LOAD_VELOCITY + 3] == 1 && first[LOAD_VELOCITY] == 0);
     assert_int_equal(cut.cells->bits[0] & CELL_FIXED, CELL_FIX(1) | CELL_FIX(2) | CELL_FIX(3));

@@ -122,13 +122,13 @@ struct push {
 static void rows_at(void *context, double t, double from, double to, double *rows)
 {
     const struct push *p = context;
-    (void)t;
     memset(rows, 0, 2 * LOAD_WIDTH * sizeof *rows);
     rows[LOAD_WIDTH + LOAD_FORCE] = p->force;
     rows[LOAD_WIDTH + LOAD_LEVER + 1] = p->lever; /* L_x along y: about z */
     rows[LOAD_WIDTH + LOAD_ACCELERATION + 1] = p->acceleration;
     /* v sin(t), mean over [from, to] */
     rows[LOAD_WIDTH + LOAD_VELOCITY + 2] = p->v * (to > from || to < from ? (cos(from) - cos(to)) / (to - from) : sin(from));
+    rows[LOAD_WIDTH + LOAD_NOW + 2] = p->v * sin(t);
 }
 
 /* One free cell, t = 2 s: x = F t^2/(2 m), y = a t^2/2, w_z = T t/J with J = m h^2/6, for two densities. */

@@ -33,6 +33,7 @@ static struct lattice_cells *make(struct lattice_options *o, struct link_materia
     alpha[1] = 50;
     o->dt = dt;
     o->turn = WITH_TURN;
+    o->energy = WITH_ENERGY;
     o->real_is_float = REAL_IS_FLOAT;
     o->position_is_float = POSITION_IS_FLOAT;
     o->material = material;
@@ -56,7 +57,7 @@ static void check_features(const struct lattice_features *f)
 {
     assert_true(f->turn == WITH_TURN && f->volume == WITH_VOLUME && f->shear_apart == WITH_SHEAR_APART && f->twist_apart == WITH_TWIST_APART);
     assert_true(f->link_damping == WITH_LINK_DAMPING && f->mass_damping == WITH_MASS_DAMPING && f->fix == WITH_FIX && f->loads == WITH_LOADS);
-    assert_true(f->gravity == WITH_GRAVITY && f->kinds == WITH_KINDS && f->rk == WITH_RK && f->breakage == WITH_BREAK);
+    assert_true(f->gravity == WITH_GRAVITY && f->kinds == WITH_KINDS && f->rk == WITH_RK && f->energy == WITH_ENERGY && f->breakage == WITH_BREAK);
 }
 
 static void same(const char *what, int64_t i, const double *device, double x, double y, double z)
@@ -144,6 +145,19 @@ static void compare_links(const struct lattice *l, const struct host *h, int ste
     free(fate);
 }
 
+static void compare_ledger(const struct lattice *l, const struct host *h)
+{
+    if (!WITH_ENERGY) return;
+    double *plane[LATTICE_LEDGER];
+    for (int k = 0; k < LATTICE_LEDGER; k++) plane[k] = lattice_read_plane(l, &l->ledger, false, k);
+    for (int64_t i = 0; i < l->n_global; i++) {
+        const struct lattice_ledger *k = &h->ledger[i];
+        const double device[3] = {plane[0][i], plane[1][i], plane[2][i]};
+        same("ledger", i, device, k->work, k->links, k->mass);
+    }
+    for (int k = 0; k < LATTICE_LEDGER; k++) free(plane[k]);
+}
+
 /* Observed at steps 0, 3 and 7; between them no stress is asked for, after step 3 it must not matter that it was. */
 static void run(enum lattice_scheme scheme, bool one_lane, int run_length)
 {
@@ -171,6 +185,7 @@ static void run(enum lattice_scheme scheme, bool one_lane, int run_length)
         compare(l, seen);
         compare_stress(l, h, seen);
         if (WITH_BREAK) compare_links(l, h, step);
+        compare_ledger(l, h);
     }
     free(seen);
     host_free(h);
