@@ -1,5 +1,5 @@
-/* lattice_speed N [single] [turn] [nu] [scheme] [run] [energy]: cells per second of a block of N^3 cells on one rank, and of the memory (triad) in the same
- * run. In seconds that this process had a core, best of many short spans: others may use the machine. A tool, not a test. */
+/* lattice_speed N [single] [turn] [nu] [scheme] [run] [energy]: cells per second of a block of N^3 cells on one rank, and of the memory (triad) in
+ * the same run. In seconds that this process had a core, best of many short spans: others may use the machine. A tool, not a test. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
