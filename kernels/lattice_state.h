@@ -140,9 +140,10 @@ LAW struct lattice_sums lattice_sums_zero(void)
 }
 
 /* The cell at the next stage, or at the end of the step; `now`: v and w of this stage, `start`: the step's start; a, b: accelerations, 0 of fixed
- * DOF. */
+ * DOF. mean_v, mean_w: (v_1 + v_2)/2, of the prescribed velocities at this stage and the next, on Nystrom's way to its second stage: what dt^2 k1/8
+ * is to a free DOF. With v_2 on the way to the third their errors cancel as those of a free DOF do. */
 LAW struct link_cell lattice_stage_next(
-    struct link_cell now, struct link_cell start, vec3 a, vec3 b, struct lattice_stage c, struct lattice_sums *sum)
+    struct link_cell now, struct link_cell start, vec3 a, vec3 b, vec3 mean_v, vec3 mean_w, struct lattice_stage c, struct lattice_sums *sum)
 {
     struct link_cell next = start;
     pvec3 v = p3_of_v3(now.v), w = p3_of_v3(now.w), pa = p3_of_v3(a), pb = p3_of_v3(b), shift, r;
@@ -152,6 +153,10 @@ LAW struct link_cell lattice_stage_next(
     sum->turn = quat_rkn4(p3_fma(c.sum_a, pb, p3_fma(c.sum_v, w, sum->turn)), w, pb, c.sum_turn);
     sum->v = v3_fma(c.sum_k, a, sum->v);
     sum->w = v3_fma(c.sum_k, b, sum->w);
+    if (c.is_nystrom && c.is_first) {
+        v = p3_of_v3(mean_v);
+        w = p3_of_v3(mean_w);
+    }
     shift = c.is_last ? sum->u : p3_fma(c.next_a, pa, p3_scale(c.next_v, v));
     r = c.is_last ? sum->turn : quat_rkn4(p3_fma(c.next_a, pb, p3_scale(c.next_v, w)), w, pb, c.next_turn);
     next.u = p3_add(start.u, shift);

@@ -120,7 +120,7 @@ LAW void lattice_sums_keep(__global preal *sum_x, __global real *sum_v, size_t p
 LAW struct link_cell lattice_advance(int mixed, struct link_cell c, struct link_cell start, struct lattice_pull pull, int word, real alpha,
                                      struct lattice_stage stage, struct lattice_sums *sum)
 {
-    vec3 zero = v3(0, 0, 0);
+    vec3 zero = v3(0, 0, 0), mean_v, mean_w;
     int held = (WITH_FIX || WITH_LOADS) && mixed;
     if (held) {
         c.v = lattice_hold(c.v, word, WORD_FIX, pull.now_v);
@@ -134,7 +134,13 @@ LAW struct link_cell lattice_advance(int mixed, struct link_cell c, struct link_
         pull.a = lattice_hold(pull.a, word, WORD_FIX, zero);
         pull.b = lattice_hold(pull.b, word, WORD_FIX + 3, zero);
     }
-    c = lattice_stage_next(c, start, pull.a, pull.b, stage, sum);
+    mean_v = c.v;
+    mean_w = c.w;
+    if (held) {
+        mean_v = lattice_hold(mean_v, word, WORD_FIX, v3_scale((real)0.5, v3_add(pull.now_v, pull.given_v)));
+        mean_w = lattice_hold(mean_w, word, WORD_FIX + 3, v3_scale((real)0.5, v3_add(pull.now_w, pull.given_w)));
+    }
+    c = lattice_stage_next(c, start, pull.a, pull.b, mean_v, mean_w, stage, sum);
     if (held) {
         c.v = lattice_hold(c.v, word, WORD_FIX, pull.given_v);
         c.w = lattice_hold(c.w, word, WORD_FIX + 3, pull.given_w);

@@ -306,7 +306,9 @@ static void rk_step(struct host *h)
             }
             r.a = lattice_hold(r.a, h->cells->bits[i], WORD_FIX, v3(0, 0, 0));
             r.b = lattice_hold(r.b, h->cells->bits[i], WORD_FIX + 3, v3(0, 0, 0));
-            h->next[i] = lattice_stage_next(c, h->start[i], r.a, r.b, stage, &h->sums[i]);
+            struct link_cell mean = c;
+            hold(h, i, &mean, v3_scale((real)0.5, v3_add(r.now_v, r.given_v)), v3_scale((real)0.5, v3_add(r.now_w, r.given_w)));
+            h->next[i] = lattice_stage_next(c, h->start[i], r.a, r.b, mean.v, mean.w, stage, &h->sums[i]);
             hold(h, i, &h->next[i], r.given_v, r.given_w);
         }
         memcpy(h->now, h->next, (size_t)h->n * sizeof *h->now);

@@ -23,18 +23,13 @@ static double wave_mean(double from, double to)
     return from < to || to < from ? (cos(omega * from) - cos(omega * to)) / (omega * (to - from)) : wave(from);
 }
 
-/* What a test asks of the loads. */
-struct how {
-    double lead; /* of the base: 1, or 0: held */
-};
-
 /* At the end a force that keeps its direction, as a traction on the upper face, and one that acts on the centres; on the side a pressure that turns
  * with the cells, and an acceleration; the base is led to and fro in y, and about x. */
 static void rows_at(void *context, double t, double from, double to, double *rows)
 {
     double *end = rows + ROW_END * LOAD_WIDTH, *side = rows + ROW_SIDE * LOAD_WIDTH, *base = rows + ROW_BASE * LOAD_WIDTH, at = wave(t);
     double traction[3] = {force, 0.3 * force, -0.5 * force}, change = omega * cos(omega * t);
-    const struct how *how = context;
+    (void)context;
     memset(rows, 0, N_ROW * LOAD_WIDTH * sizeof *rows);
     for (int a = 0; a < 3; a++) {
         end[LOAD_FORCE + a] = at * traction[a] + (a == 2 ? 50 : 0);
@@ -47,10 +42,10 @@ static void rows_at(void *context, double t, double from, double to, double *row
     side[LOAD_RATE] = -change * pressure;
     side[LOAD_ACCELERATION] = 20 * at;
     rows[ROW_PULL * LOAD_WIDTH + LOAD_FORCE + 2] = 50;
-    base[LOAD_VELOCITY + 1] = 0.3 * how->lead * wave_mean(from, to);
-    base[LOAD_VELOCITY + 3] = 2 * how->lead * wave_mean(from, to);
-    base[LOAD_NOW + 1] = 0.3 * how->lead * at;
-    base[LOAD_NOW + 3] = 2 * how->lead * at;
+    base[LOAD_VELOCITY + 1] = 0.3 * wave_mean(from, to);
+    base[LOAD_VELOCITY + 3] = 2 * wave_mean(from, to);
+    base[LOAD_NOW + 1] = 0.3 * at;
+    base[LOAD_NOW + 3] = 2 * at;
 }
 
 /* Base: x = 0, held but in y and about x, where it is led. End: x = N_X - 1. Side: y = 1 of the third layer. */
@@ -83,9 +78,7 @@ static struct sums run(struct lattice_options o, double eta, double alpha_1, dou
     o.n_material = 2;
     o.alpha = alpha;
     o.n_row = N_ROW;
-    struct how how = {o.scheme == LATTICE_RKN4 ? 0 : 1}; /* a base that is led costs RKN4 its order */
     o.rows_at = rows_at;
-    o.context = &how;
     o.gravity[1] = -9.81;
     struct lattice *l = lattice_create(dev, comm, cells, &o);
     struct lattice_account *account = lattice_energy_create(l, cells);
@@ -128,17 +121,9 @@ static struct lattice_energy pass(
     const struct link_material *m, double alpha, int n, int row, int fixed, double v, enum lattice_scheme scheme, double (*u)[3])
 {
     const int size[3] = {n, 1, 1};
-    struct how how = {1};
     struct lattice_cells *cells = bodies_create(1, size, h, 1, bodies_block);
-    struct lattice_options o = {.scheme = scheme,
-        .dt = 1e-4,
-        .energy = true,
-        .material = m,
-        .alpha = &alpha,
-        .n_material = 1,
-        .n_row = N_ROW,
-        .rows_at = rows_at,
-        .context = &how};
+    struct lattice_options o = {
+        .scheme = scheme, .dt = 1e-4, .energy = true, .material = m, .alpha = &alpha, .n_material = 1, .n_row = N_ROW, .rows_at = rows_at};
     struct lattice_energy e;
     bodies_shake(cells, 0, 0);
     for (int i = 0; i < n; i++) {

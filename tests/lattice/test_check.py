@@ -29,7 +29,7 @@ class Plate(cli.Case):
         limit = 2 * math.sqrt(2) / math.sqrt(28 * 210e9 / (2 * 1.28) / 7900) * 5e-3
         self.assertAlmostEqual(self.limit(text) / limit, 1, 3)
         self.assertIn(f"time: 0.01 s in {math.ceil(0.01 / (0.8 * limit))} steps", text)
-        self.assertIn("\nfeatures in: turn volume twist_apart mass_damping fix loads rk\n", text)
+        self.assertIn("\nfeatures in: turn volume twist_apart mass_damping fix loads rk energy\n", text)
         self.assertEqual(self.said(ranks=2), text)
 
     def test_damping_of_links(self):
