@@ -159,6 +159,7 @@ struct lattice *lattice_create(struct device *dev, const struct comm *comm, cons
 {
     struct lattice *l = fail_alloc(sizeof *l);
     l->dev = dev;
+    l->timers = &l->unread;
     l->comm = comm;
     l->options = *options;
     l->scheme = lattice_schemes_table(options->scheme);

@@ -42,7 +42,7 @@ struct lattice {
         cl_event sent[LATTICE_SLOTS];
         int64_t n_sent;
     } rows;
-    struct timers timers;
+    struct timers unread, *timers; /* of exchanges; the run puts its own in place of `unread` */
 };
 
 /* `cells` and what `options` points to are borrowed during the call only, but for `material`, `alpha` and `context`. Collective. */

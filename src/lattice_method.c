@@ -66,6 +66,7 @@ static void setup(struct sim *s)
     log_print(s->log, "%lld cells in %d %s", (long long)s->n_first, s->scene->n_body, s->scene->n_body == 1 ? "body" : "bodies");
     if (r->input->options.energy) energy_require_double(s);
     r->lattice = lattice_create(s->dev, s->comm, r->cells, &r->input->options);
+    r->lattice->timers = &s->timers;
     r->account = lattice_energy_create(r->lattice, r->cells);
     if (wants_stress(s->scene)) r->stress = lattice_stress_create(r->lattice, s->scene->lattice.stress == STRESS_EXTRAPOLATED);
     if (s->scene->lattice.relax) {

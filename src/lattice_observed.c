@@ -30,7 +30,7 @@ void lattice_observed_refresh(struct lattice *l, bool with_pressure)
         launch_run(l->force, l->dev->compute, 0, 0, NULL, &nothing);
         device_flush(l->dev);
         lattice_halo_read(l->dev, l->halo);
-        lattice_halo_swap(l->dev, l->halo, &nothing, &l->timers);
+        lattice_halo_swap(l->dev, l->halo, &nothing, l->timers);
     }
     if (!with_pressure || !l->features.volume) return;
     lattice_observed_bind(l, l->volume);

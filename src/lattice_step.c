@@ -43,7 +43,7 @@ static void evaluate(struct lattice *l, int x_in, int x_out, int v_in, int v_out
         run(l, l->force, n_first, c->n_force_interior - n_first, NULL);
         device_flush(l->dev);
         lattice_halo_read(l->dev, l->halo);
-        lattice_halo_swap(l->dev, l->halo, &most, &l->timers);
+        lattice_halo_swap(l->dev, l->halo, &most, l->timers);
     }
     int n_volume = l->halo ? c->n_volume_interior : 0, n_force = l->halo ? c->n_force_interior : 0;
     if (l->features.volume) run(l, l->volume, n_volume, c->n_volume - n_volume, NULL);
