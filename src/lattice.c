@@ -22,6 +22,10 @@ size_t lattice_v_bytes(const struct lattice *l)
     return l->features.real_is_float ? sizeof(float) : sizeof(double);
 }
 
+/* How long a side counts when a body is to be cut across its longest: a cut across x splits runs, whose parts are padded and send single cells, one
+ * across z sends whole layers. Measured on 100^3 cells and two ranks: 390 bytes per cell with a cut across x, 257 across z. */
+static const double side_counts[3] = {0.5, 0.99, 1};
+
 /* Every rank has all cells: it hands in its share of them and asks for all owners. Weight: 1 + links. The caller frees. */
 static int *owners(const struct comm *comm, const struct lattice_cells *cells)
 {
@@ -32,7 +36,7 @@ static int *owners(const struct comm *comm, const struct lattice_cells *cells)
     int *owner = fail_alloc((size_t)cells->n * sizeof *owner);
     for (int64_t i = 0; i < cells->n; i++) {
         const struct lattice_grid *g = &cells->grid[cells->kind[cells->kind_of[i]].grid];
-        for (int a = 0; a < 3; a++) x[i][a] = g->origin[a] + (cells->at[i][a] + 0.5) * g->h;
+        for (int a = 0; a < 3; a++) x[i][a] = side_counts[a] * (g->origin[a] + (cells->at[i][a] + 0.5) * g->h);
     }
     for (int64_t i = 0; i < n; i++) weight[i] = 1 + __builtin_popcount(cells->bits[begin + i] & 63);
     struct rcb *rcb = rcb_create(comm, n > 0 ? x[begin] : x[0], weight, n);
