@@ -127,15 +127,18 @@ static void fill_info(struct build *b)
         if (l->info[r] < 0) l->info[r] = 0;
 }
 
-static const struct lattice_place *tile_place; /* qsort passes no context */
-static int tile_rows;
+/* A run and where it comes in the order of kernels. */
+struct tile {
+    int32_t grid, rows; /* rows: number of the tile along y */
+    int run;
+};
 
 static int compare_tiles(const void *a, const void *b)
 {
-    int r = *(const int *)a, t = *(const int *)b;
-    const struct lattice_place *p = &tile_place[r], *q = &tile_place[t];
-    if (p->grid == q->grid && p->y / tile_rows != q->y / tile_rows) return p->y / tile_rows < q->y / tile_rows ? -1 : 1;
-    return r < t ? -1 : r > t; /* places are sorted by grid, z, y, x */
+    const struct tile *p = a, *q = b;
+    if (p->grid != q->grid) return p->grid < q->grid ? -1 : 1;
+    if (p->rows != q->rows) return p->rows < q->rows ? -1 : 1;
+    return p->run < q->run ? -1 : p->run > q->run; /* runs are sorted by grid, z, y, x */
 }
 
 /* The runs of this rank in the order in which kernels take them: tiles of some rows along y, each through all layers along z, so that the three
@@ -143,17 +146,19 @@ static int compare_tiles(const void *a, const void *b)
 static int *order_runs(const struct build *b)
 {
     const struct lattice_place *p = b->places->place;
+    struct tile *tile = fail_alloc((size_t)b->l->n_run * sizeof *tile);
     int *order = fail_alloc((size_t)b->l->n_run * sizeof *order), n = 0, row = 0, longest = 1;
     for (int r = 0; r < b->places->n_run; r++) {
         row = r > 0 && p[r].grid == p[r - 1].grid && p[r].z == p[r - 1].z && p[r].y == p[r - 1].y ? row + 1 : 1;
         if (row > longest) longest = row;
-        if (b->local[r]) order[n++] = r;
     }
-    tile_place = p;
-    tile_rows = TILE_CELLS / (longest * b->places->run);
-    if (tile_rows < 1) tile_rows = 1;
-    qsort(order, (size_t)n, sizeof *order, compare_tiles);
-    for (int k = 0; k < n; k++) order[k] = b->local[order[k]];
+    int rows = TILE_CELLS / (longest * b->places->run);
+    if (rows < 1) rows = 1;
+    for (int r = 0; r < b->places->n_run; r++)
+        if (b->local[r]) tile[n++] = (struct tile){p[r].grid, p[r].y / rows, b->local[r]};
+    qsort(tile, (size_t)n, sizeof *tile, compare_tiles);
+    for (int k = 0; k < n; k++) order[k] = tile[k].run;
+    free(tile);
     return order;
 }
 
