@@ -6,9 +6,7 @@
 #include "fail.h"
 #include "lattice_bodies.h"
 #include "lattice_energy.h"
-
-static struct comm *comm;
-static struct device *dev;
+#include "device_tests.h"
 
 enum { N_X = 6, ROW_END = 1, ROW_SIDE, ROW_BASE, ROW_PULL, N_ROW };
 static const double h = 0.1, omega = 150, force = 300 /* [N] per cell at the end */, pressure = 2e4 /* [Pa] */;
@@ -218,11 +216,5 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(pulled_cell), cmocka_unit_test(led_cell), cmocka_unit_test(dashpot),
         cmocka_unit_test(leapfrog), cmocka_unit_test(rk4), cmocka_unit_test(rkn4), cmocka_unit_test(pefrl), cmocka_unit_test(vefrl)};
-    comm = comm_create(NULL, NULL);
-    dev = device_open(comm, NULL, true, false);
-    if (!dev->fp64) return 77;
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    device_free(dev);
-    comm_free(comm);
-    return failed;
+    return DEVICE_TESTS(tests);
 }

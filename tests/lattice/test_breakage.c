@@ -7,9 +7,8 @@
 #include "lattice_break.h"
 #include "lattice_energy.h"
 #include "tests/mpi_check.h"
+#include "device_tests.h"
 
-static struct comm *comm;
-static struct device *dev;
 static const enum lattice_scheme schemes[5] = {LATTICE_LEAPFROG, LATTICE_RK4, LATTICE_RKN4, LATTICE_PEFRL, LATTICE_VEFRL};
 enum { TENSION, SHEAR, BENDING, TWIST };
 
@@ -203,10 +202,5 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_link), cmocka_unit_test(schemes_agree), cmocka_unit_test(as_if_never_there), cmocka_unit_test(released)};
-    comm = comm_create(NULL, NULL);
-    dev = device_open(comm, NULL, true, false);
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    device_free(dev);
-    comm_free(comm);
-    return failed;
+    return DEVICE_TESTS(tests);
 }

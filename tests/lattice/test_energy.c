@@ -6,9 +6,7 @@
 #include "fail.h"
 #include "lattice_bodies.h"
 #include "lattice_energy.h"
-
-static struct comm *comm;
-static struct device *dev;
+#include "device_tests.h"
 
 static struct lattice_energy energy_of(struct lattice *l, const struct lattice_cells *cells)
 {
@@ -201,11 +199,5 @@ static void loaded(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(one_cell), cmocka_unit_test(strained), cmocka_unit_test(kept), cmocka_unit_test(loaded)};
-    comm = comm_create(NULL, NULL);
-    dev = device_open(comm, NULL, true, false);
-    if (!dev->fp64) return 77;
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    device_free(dev);
-    comm_free(comm);
-    return failed;
+    return DEVICE_TESTS(tests);
 }

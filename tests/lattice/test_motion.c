@@ -5,9 +5,8 @@
 
 #include "fail.h"
 #include "lattice_bodies.h"
+#include "device_tests.h"
 
-static struct comm *comm;
-static struct device *dev;
 static const enum lattice_scheme schemes[5] = {LATTICE_LEAPFROG, LATTICE_RK4, LATTICE_RKN4, LATTICE_PEFRL, LATTICE_VEFRL};
 
 /* The state of a small body after n steps from m, in m. */
@@ -243,11 +242,5 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(chain_leapfrog), cmocka_unit_test(chain_orders), cmocka_unit_test(block_orders),
         cmocka_unit_test(free_cell), cmocka_unit_test(prescribed), cmocka_unit_test(mass_damping), cmocka_unit_test(link_damping)};
-    comm = comm_create(NULL, NULL);
-    dev = device_open(comm, NULL, true, false);
-    if (!dev->fp64) return 77;
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    device_free(dev);
-    comm_free(comm);
-    return failed;
+    return DEVICE_TESTS(tests);
 }

@@ -8,9 +8,8 @@
 #include "lattice_bodies.h"
 #include "lattice_stress.h"
 #include "quat.h"
+#include "device_tests.h"
 
-static struct comm *comm;
-static struct device *dev;
 static const double edge = 0.005;
 
 /* Row m: faces in the mask m are exposed. */
@@ -160,11 +159,5 @@ static void pressure(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(uniaxial), cmocka_unit_test(any_stress), cmocka_unit_test(pressure)};
-    comm = comm_create(NULL, NULL);
-    dev = device_open(comm, NULL, true, false);
-    if (!dev->fp64) return 77;
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    device_free(dev);
-    comm_free(comm);
-    return failed;
+    return DEVICE_TESTS(tests);
 }
