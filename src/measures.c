@@ -41,7 +41,7 @@ void measures_write(struct sim *s, struct measures *m)
 {
     bool any = false, *due = fail_alloc((size_t)m->n * sizeof *due);
     double(*value)[MEASURE_COLUMNS] = fail_alloc((size_t)m->n * sizeof *value);
-    for (int i = 0; i < m->n; i++) any |= due[i] = s->step % measures_every(s, i) == 0;
+    for (int i = 0; i < m->n; i++) any |= due[i] = s->rest.reached || s->step % measures_every(s, i) == 0;
     if (any) s->ops->measure(s, due, value);
     for (int i = 0; i < m->n; i++)
         if (due[i]) series_add(m->series[i], (double)s->step * s->dt, value[i]);

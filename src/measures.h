@@ -11,7 +11,7 @@ struct measures *measures_create(struct sim *s);
 void measures_free(struct measures *m);
 /* Steps between lines of measure i. */
 int64_t measures_every(const struct sim *s, int i);
-/* Adds a line to every measure that is due at s->step. Collective; the state on the device is an observed one. */
+/* Adds a line to every measure that is due at s->step, to all at rest (lattice.relax). Collective; the state on the device is an observed one. */
 void measures_write(struct sim *s, struct measures *m);
 void measures_flush(struct measures *m);
 #endif
