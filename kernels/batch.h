@@ -32,6 +32,17 @@
 #define BATCH_VECTOR
 #endif
 #define FOR_BATCH(l, n) for (size_t l = get_local_id(0); l < (n); l += BATCH_LANES)
+/* The same in pieces of BATCH_WIDTH, before each of which PREFETCH fetches what later pieces read or write; BATCH is a multiple of BATCH_WIDTH.
+ * Where a piece is longer than the window in which a processor reorders instructions, it would compute and wait by turns. */
+#if WITH_ONE_LANE && defined(__clang__)
+#define FOR_PIECES(piece) for (size_t piece = 0; piece < BATCH; piece += BATCH_WIDTH)
+#define FOR_PIECE(l, piece) for (size_t l = piece; l < piece + BATCH_WIDTH; l++)
+#define PREFETCH(p) __builtin_prefetch((const void *)(uintptr_t)(p), 0, 2)
+#else
+#define FOR_PIECES(piece) for (size_t piece = 0; piece < 1; piece++)
+#define FOR_PIECE(l, piece) FOR_BATCH(l, BATCH)
+#define PREFETCH(p)
+#endif
 #endif
 
 #endif

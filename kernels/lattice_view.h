@@ -77,6 +77,18 @@ LAW struct lattice_view lattice_view_of(__global const preal *x, __global const 
     return s;
 }
 
+#ifdef __OPENCL_VERSION__
+/* Pieces that are fetched ahead: of what lies at the front of the tile, x at +z, and of what belongs to the cells alone. On 100^3 cells in double
+ * precision, pocl 3.1, AMD Zen 5 (leapfrog): 88 million cells/s with none ahead, 98 with 2, 104 with 3, 110 with 4, 117 with 5, 115 with 6. */
+enum { PIECES_AHEAD = 5 };
+
+LAW void lattice_fetch(__global const void *first, size_t bytes, size_t plane, int n_plane)
+{
+    for (int k = 0; k < n_plane; k++) PREFETCH((__global const char *)first + (size_t)k * plane * bytes);
+    (void)first, (void)bytes, (void)plane;
+}
+#endif
+
 /* Force and torque of the link over a face. */
 LAW struct link_share lattice_face(int face, int mixed, struct lattice_view s, size_t l, int word, struct link_cell me)
 {

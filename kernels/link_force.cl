@@ -178,16 +178,41 @@ LAW struct link_cell lattice_advance(int mixed, struct link_cell c, struct link_
 #else
 #define ROWS 0, 0
 #endif
+#define AHEAD_X(p, n) lattice_fetch((p) + at, sizeof(preal), s.plane, n)
+#define AHEAD_V(p) lattice_fetch((p) + at, sizeof(real), s.plane, LATTICE_V)
+#if WITH_RK
+#define AHEAD_SUMS                                                                                                                                   \
+    do {                                                                                                                                             \
+        AHEAD_X(x + start_x, LATTICE_X(WITH_TURN));                                                                                                  \
+        AHEAD_V(v + start_v);                                                                                                                        \
+        AHEAD_V(v + v_out);                                                                                                                          \
+        AHEAD_X(sum_x, WITH_TURN ? 9 : 6);                                                                                                           \
+        AHEAD_V(sum_v);                                                                                                                              \
+    } while (0)
+#else
+#define AHEAD_SUMS
+#endif
+#define AHEAD(piece)                                                                                                                                 \
+    do {                                                                                                                                             \
+        size_t ahead = (piece) + PIECES_AHEAD * BATCH_WIDTH, at = s.begin + ahead;                                                                   \
+        lattice_fetch(s.x + s.base[3] + ahead, sizeof(preal), s.plane, LATTICE_X(WITH_TURN));                                                        \
+        AHEAD_V(s.v);                                                                                                                                \
+        AHEAD_X(x + x_out, LATTICE_X(WITH_TURN));                                                                                                    \
+        AHEAD_SUMS;                                                                                                                                  \
+    } while (0)
 #define RUN(mixed, kind)                                                                                                                             \
-    BATCH_VECTOR                                                                                                                                     \
-    FOR_BATCH (l, BATCH) {                                                                                                                           \
-        size_t i = s.begin + l;                                                                                                                      \
-        int word_i = word[i];                                                                                                                        \
-        struct link_cell c = lattice_moving(s, i, lattice_cell(s, i));                                                                               \
-        struct lattice_pull pull = lattice_pull_of(mixed, s, l, word_i, c, cell + (kind)*CELL_WIDTH, ROWS, gravity);                                 \
-        ACCOUNT(mixed, kind);                                                                                                                        \
-        NEXT(mixed, kind);                                                                                                                           \
-        lattice_keep(x + x_out, v + v_out, s.plane, i, c);                                                                                           \
+    FOR_PIECES (piece) {                                                                                                                             \
+        AHEAD(piece);                                                                                                                                \
+        BATCH_VECTOR                                                                                                                                 \
+        FOR_PIECE (l, piece) {                                                                                                                       \
+            size_t i = s.begin + l;                                                                                                                  \
+            int word_i = word[i];                                                                                                                    \
+            struct link_cell c = lattice_moving(s, i, lattice_cell(s, i));                                                                           \
+            struct lattice_pull pull = lattice_pull_of(mixed, s, l, word_i, c, cell + (kind)*CELL_WIDTH, ROWS, gravity);                             \
+            ACCOUNT(mixed, kind);                                                                                                                    \
+            NEXT(mixed, kind);                                                                                                                       \
+            lattice_keep(x + x_out, v + v_out, s.plane, i, c);                                                                                       \
+        }                                                                                                                                            \
     }
 
 /* Runs list[first] to list[first + n - 1]. info: of runs (RUN_MIXED). x_in, x_out, v_in, v_out: first

@@ -30,6 +30,18 @@ LAW real lattice_pressure(int still, int mixed, struct lattice_view s, size_t l,
 #define TRACTION(i) 0
 #endif
 
+#define VOLUMES(mixed, constants, traction)                                                                                                          \
+    FOR_PIECES (piece) {                                                                                                                             \
+        lattice_fetch(s.x + s.base[3] + piece + PIECES_AHEAD * BATCH_WIDTH, sizeof(preal), s.plane, LATTICE_X(WITH_TURN));                           \
+        BATCH_VECTOR                                                                                                                                 \
+        FOR_PIECE (l, piece) {                                                                                                                       \
+            size_t i = s.begin + l;                                                                                                                  \
+            __global const real *at = constants;                                                                                                     \
+            p[i] = lattice_pressure(0, mixed, s, l, word[i], at, traction);                                                                          \
+            if (WITH_ENERGY && WITH_LINK_DAMPING) p[s.plane + i] = lattice_pressure(1, mixed, s, l, word[i], at, traction);                          \
+        }                                                                                                                                            \
+    }
+
 __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1)))
 void link_volume(int first, int n, __global const int *list, __global const int *info, __global const int *base, __global const int *word,
                  int n_run, int n_kind, long plane, __global const preal *x, long x_in, __global const real *v, long v_in,
@@ -43,19 +55,8 @@ void link_volume(int first, int n, __global const int *list, __global const int 
     int run = list[first + get_group_id(0)], what = info[run], kind = what & (RUN_MIXED - 1);
     struct lattice_view s = lattice_view_of(x + x_in, v + v_in, word, link, base, run, n_run, n_kind, kind, (size_t)plane);
     if ((WITH_KINDS || WITH_LOADS) && what >= RUN_MIXED) {
-        BATCH_VECTOR
-        FOR_BATCH (l, BATCH) {
-            size_t i = s.begin + l;
-            __global const real *at = cell + LATTICE_KIND(word[i]) * CELL_WIDTH;
-            p[i] = lattice_pressure(0, 1, s, l, word[i], at, (real)TRACTION(i));
-            if (WITH_ENERGY && WITH_LINK_DAMPING) p[s.plane + i] = lattice_pressure(1, 1, s, l, word[i], at, (real)TRACTION(i));
-        }
+        VOLUMES(1, cell + LATTICE_KIND(word[i]) * CELL_WIDTH, (real)TRACTION(i))
     } else {
-        BATCH_VECTOR
-        FOR_BATCH (l, BATCH) {
-            size_t i = s.begin + l;
-            p[i] = lattice_pressure(0, 0, s, l, word[i], cell + kind * CELL_WIDTH, (real)0);
-            if (WITH_ENERGY && WITH_LINK_DAMPING) p[s.plane + i] = lattice_pressure(1, 0, s, l, word[i], cell + kind * CELL_WIDTH, (real)0);
-        }
+        VOLUMES(0, cell + kind * CELL_WIDTH, (real)0)
     }
 }

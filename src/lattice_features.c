@@ -56,7 +56,7 @@ char *lattice_features_options(const struct lattice_features *f, int run)
                        "-DWITH_LINK_DAMPING=%d -DWITH_MASS_DAMPING=%d -DWITH_FIX=%d -DWITH_LOADS=%d -DWITH_GRAVITY=%d -DWITH_KINDS=%d -DWITH_RK=%d "
                        "-DWITH_ENERGY=%d -DWITH_BREAK=%d -DBATCH=%d -DBATCH_WIDTH=%d",
         f->real_is_float, f->position_is_float, f->turn, f->volume, f->shear_apart, f->twist_apart, f->link_damping, f->mass_damping, f->fix,
-        f->loads, f->gravity, f->kinds, f->rk, f->energy, f->breakage, run, f->real_is_float && f->position_is_float ? 16 : 8);
+        f->loads, f->gravity, f->kinds, f->rk, f->energy, f->breakage, run, f->real_is_float && f->position_is_float && run % 16 == 0 ? 16 : 8);
 }
 
 double *lattice_features_links(const struct lattice_cells *cells, const struct lattice_options *o)

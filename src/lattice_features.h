@@ -25,7 +25,7 @@ struct lattice_options {
     int n_row;                            /* rows of loads; up to 1: no loads */
     lattice_rows_at *rows_at;
     void *context;
-    int run; /* length of runs: 16, 32 or 64; 0: what suits the body */
+    int run; /* length of runs, a multiple of 8; 0: what suits the body */
 };
 
 struct lattice_features {

@@ -11,6 +11,8 @@
 
 /* What a run costs beside its places, in places. */
 enum { RUN_COST = 6 };
+/* Lengths that are tried: whole vectors of any processor, and work-groups that any device takes. */
+enum { RUN_SHORTEST = 16, RUN_LONGEST = 128, RUN_STEP = 8 };
 /* Planes begin this many cells beyond a multiple of 1024: aligned for any vector, and in different sets of a cache. */
 enum { PLANE_SHIFT = 80 };
 /* Cells in one layer of a tile, see order_runs. On 100^3 cells in double precision, pocl 3.1, AMD Zen 5 with 1 MiB per core: without tiles 48
@@ -30,9 +32,9 @@ struct build {
 
 int lattice_layout_run(const struct lattice_cells *cells)
 {
-    int best = 16;
+    int best = RUN_SHORTEST;
     int64_t cost = INT64_MAX;
-    for (int run = 16; run <= 64; run *= 2) {
+    for (int run = RUN_SHORTEST; run <= RUN_LONGEST; run += RUN_STEP) {
         int64_t c = lattice_places_count(cells, run) * (run + RUN_COST);
         if (c <= cost) best = run;
         if (c <= cost) cost = c;

@@ -10,7 +10,7 @@
 #include "lattice_cells.h"
 
 struct lattice_layout {
-    int run;       /* length of a run: 16, 32 or 64 */
+    int run;       /* length of a run: a multiple of 8 */
     int n_run;     /* with the empty ones */
     int64_t plane; /* [cells] from one plane to the next: padded, for powers of two cost half the speed */
     int *base;     /* [4][n_run] first index of the runs at -y, +y, -z, +z */
