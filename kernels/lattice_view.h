@@ -1,10 +1,16 @@
-/* Lattice cells in device memory: runs of BATCH cells along x, one work-group each (src/lattice_layout.h). Bases of the neighbouring runs are uniform
- * over the group, so all loads are contiguous. Planes: number k of cell i is at k * plane + i; x and v point to the first plane of the state. */
+/* Lattice cells in device memory: runs of BATCH cells along RUN_AXIS, one work-group each (src/lattice_layout.h). Bases of the neighbouring runs are
+ * uniform over the group, so all loads are contiguous. Planes: number k of cell i is at k * plane + i; x and v point to the first plane of the
+ * state. */
 #ifndef DEMOCLES_LATTICE_VIEW_H
 #define DEMOCLES_LATTICE_VIEW_H
 
 #include "batch.h"
 #include "lattice_state.h"
+
+#ifndef RUN_AXIS
+#define RUN_AXIS 0
+#endif
+#define RUN_SIDE(axis) (2 * ((axis) - ((axis) > RUN_AXIS))) /* of base: the runs beside along this axis */
 
 struct lattice_view {
     __global const preal *x;
@@ -13,7 +19,7 @@ struct lattice_view {
     __global const int *word;
     __global const real *link; /* table of LINK_WIDTH */
     size_t plane, begin;       /* begin: of this run */
-    size_t base[4];            /* of the runs at -y, +y, -z, +z */
+    size_t base[4];            /* of the runs beside, - and + along the lower of the two other axes, then along the higher */
     int n_kind;
     int still;               /* 1: links without their dashpots */
     struct link_constants k; /* of a run whose cells and neighbours are of one kind */
@@ -40,7 +46,8 @@ LAW struct link_cell lattice_moving(struct lattice_view s, size_t i, struct link
 /* Where the neighbour over a face of lane l is; anything may be there if there is no link. */
 LAW size_t lattice_beside(struct lattice_view s, int face, size_t l)
 {
-    return face == 0 ? s.begin + l - 1 : face == 1 ? s.begin + l + 1 : s.base[face - 2] + l;
+    int axis = face >> 1, is_upper = face & 1;
+    return axis != RUN_AXIS ? s.base[RUN_SIDE(axis) + is_upper] + l : is_upper ? s.begin + l + 1 : s.begin + l - 1;
 }
 
 /* Constants of the link over a face: of the run, or (`mixed`) of the two cells' kinds. */
@@ -55,6 +62,15 @@ LAW struct link_constants lattice_constants(struct lattice_view s, int face, int
     return k;
 }
 
+LAW void lattice_view_runs(struct lattice_view *s, __global const int *base, int run, int n_run)
+{
+    s->begin = (size_t)run * BATCH;
+    s->base[0] = (size_t)base[run];
+    s->base[1] = (size_t)base[n_run + run];
+    s->base[2] = (size_t)base[2 * n_run + run];
+    s->base[3] = (size_t)base[3 * n_run + run];
+}
+
 LAW struct lattice_view lattice_view_of(__global const preal *x, __global const real *v, __global const int *word, __global const real *link,
     __global const int *base, int run, int n_run, int n_kind, int kind, size_t plane)
 {
@@ -66,11 +82,7 @@ LAW struct lattice_view lattice_view_of(__global const preal *x, __global const 
     s.word = word;
     s.link = link;
     s.plane = plane;
-    s.begin = (size_t)run * BATCH;
-    s.base[0] = (size_t)base[run];
-    s.base[1] = (size_t)base[n_run + run];
-    s.base[2] = (size_t)base[2 * n_run + run];
-    s.base[3] = (size_t)base[3 * n_run + run];
+    lattice_view_runs(&s, base, run, n_run);
     s.n_kind = n_kind;
     s.still = 0;
     LATTICE_CONSTANTS(s.k, row);
@@ -78,8 +90,9 @@ LAW struct lattice_view lattice_view_of(__global const preal *x, __global const 
 }
 
 #ifdef __OPENCL_VERSION__
-/* Pieces that are fetched ahead: of what lies at the front of the tile, x at +z, and of what belongs to the cells alone. On 100^3 cells in double
- * precision, pocl 3.1, AMD Zen 5 (leapfrog): 88 million cells/s with none ahead, 98 with 2, 104 with 3, 110 with 4, 117 with 5, 115 with 6. */
+/* Pieces that are fetched ahead: of what lies at the front of the tile, x of the run beside that comes last, and of what belongs to the cells alone.
+ * On 100^3 cells in double precision, pocl 3.1, AMD Zen 5 (leapfrog): 88 million cells/s with none ahead, 98 with 2, 104 with 3, 110 with 4, 117 with
+ * 5, 115 with 6. */
 enum { PIECES_AHEAD = 5 };
 
 LAW void lattice_fetch(__global const void *first, size_t bytes, size_t plane, int n_plane)

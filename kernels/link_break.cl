@@ -64,12 +64,13 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1)))
 void link_part(int n, __global const int *list, __global const int *base, int n_run, __global int *restrict word, __global const int *fate)
 {
     if (get_group_id(0) >= (size_t)n) return;
-    int run = list[get_group_id(0)];
-    size_t begin = (size_t)run * BATCH, y = (size_t)base[run], z = (size_t)base[2 * n_run + run];
+    struct lattice_view s;
+    lattice_view_runs(&s, base, list[get_group_id(0)], n_run);
     BATCH_VECTOR
     FOR_BATCH (l, BATCH) {
-        size_t i = begin + l;
-        int word_i = word[i], gone = lattice_gone(fate[i], fate[i - 1], fate[y + l], fate[z + l]);
+        size_t i = s.begin + l;
+        int word_i = word[i];
+        int gone = lattice_gone(fate[i], fate[lattice_beside(s, 0, l)], fate[lattice_beside(s, 2, l)], fate[lattice_beside(s, 4, l)]);
         word[i] = word_i & ~(word_i >> WORD_OWNED & 1 ? gone : 0);
     }
 }

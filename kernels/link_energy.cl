@@ -36,7 +36,8 @@ void link_energies(int n, __global const int *list, __global const int *info, __
         struct link_cell c = lattice_moving(s, i, lattice_cell(s, i));
         __global const real *constants = cell + LATTICE_KIND(word_i) * CELL_WIDTH;
         __global const double *from = place + (size_t)run * 4;
-        double at[3] = {from[0] + (double)l * from[3], from[1], from[2]};
+        double at[3] = {from[0], from[1], from[2]};
+        at[RUN_AXIS] += (double)l * from[3];
         struct lattice_load load = {.traction = 0};
 #if WITH_LOADS
         __global const real *load_row = rows + at_rows + (size_t)row[i] * LOAD_WIDTH;

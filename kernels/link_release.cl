@@ -25,7 +25,8 @@ void link_release(int n, __global const int *list, __global const int *info, __g
         lattice_view_of(x + x_in, v + v_in, word, link, base, run, n_run, n_kind, info[run] & (RUN_MIXED - 1), (size_t)plane);
     FOR_BATCH (l, BATCH) {
         size_t i = s.begin + l;
-        int word_i = word[i], late = fresh[i], gone = lattice_gone(fate[i], fate[i - 1], fate[s.base[0] + l], fate[s.base[2] + l]);
+        int word_i = word[i], late = fresh[i];
+        int gone = lattice_gone(fate[i], fate[lattice_beside(s, 0, l)], fate[lattice_beside(s, 2, l)], fate[lattice_beside(s, 4, l)]);
         gone &= LATTICE_LINKS(word_i);
         fresh[i] = gone;
         if (!(late | gone)) continue;

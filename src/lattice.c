@@ -22,21 +22,25 @@ size_t lattice_v_bytes(const struct lattice *l)
     return l->features.real_is_float ? sizeof(float) : sizeof(double);
 }
 
-/* How long a side counts when a body is to be cut across its longest: a cut across x splits runs, whose parts are padded and send single cells, one
- * across z sends whole layers. Measured on 100^3 cells and two ranks: 390 bytes per cell with a cut across x, 267 across z. */
-static const double side_counts[3] = {0.5, 0.99, 1};
+/* How long a side counts when a body is to be cut across its longest: a cut across runs splits them, whose parts are padded and send single cells,
+ * one between layers of runs sends whole layers. Measured on 100^3 cells in runs along x and two ranks: 390 bytes per cell with a cut across x, 267
+ * across z. */
+#define SPLIT_COUNTS 0.5
+#define LAYER_COUNTS 0.99
 
 /* Every rank has all cells: it hands in its share of them and asks for all owners. Weight: 1 + links. The caller frees. */
-static int *owners(const struct comm *comm, const struct lattice_cells *cells)
+static int *owners(const struct comm *comm, const struct lattice_cells *cells, int run_axis)
 {
     int64_t share = (cells->n + comm->n_rank - 1) / comm->n_rank, begin = share * comm->rank, n = cells->n - begin < share ? cells->n - begin : share;
+    int last = run_axis == 2 ? 1 : 2; /* along which whole layers follow each other */
     if (n < 0) n = 0;
     double(*x)[3] = fail_alloc((size_t)cells->n * sizeof *x);
     int64_t *weight = fail_alloc((size_t)n * sizeof *weight);
     int *owner = fail_alloc((size_t)cells->n * sizeof *owner);
     for (int64_t i = 0; i < cells->n; i++) {
         const struct lattice_grid *g = &cells->grid[cells->kind[cells->kind_of[i]].grid];
-        for (int a = 0; a < 3; a++) x[i][a] = side_counts[a] * (g->origin[a] + (cells->at[i][a] + 0.5) * g->h);
+        for (int a = 0; a < 3; a++)
+            x[i][a] = (a == run_axis ? SPLIT_COUNTS : a == last ? 1 : LAYER_COUNTS) * (g->origin[a] + (cells->at[i][a] + 0.5) * g->h);
     }
     for (int64_t i = 0; i < n; i++) weight[i] = 1 + __builtin_popcount(cells->bits[begin + i] & 63);
     struct rcb *rcb = rcb_create(comm, n > 0 ? x[begin] : x[0], weight, n);
@@ -170,10 +174,11 @@ struct lattice *lattice_create(struct device *dev, const struct comm *comm, cons
     l->features = lattice_features_of(cells, options);
     l->n_global = cells->n;
     l->n_kind = cells->n_kind;
-    int *owner = owners(comm, cells), run = options->run ? options->run : lattice_layout_run(cells);
+    struct lattice_lay run = options->run.length > 0 ? options->run : lattice_layout_run(cells);
+    int *owner = owners(comm, cells, run.axis);
     l->layout = lattice_layout_create(cells, owner, comm->rank, comm->n_rank, run, l->features.volume ? 2 : 1);
     free(owner);
-    char *text = lattice_features_options(&l->features, run);
+    char *text = lattice_features_options(&l->features, l->layout);
     l->program = program_build(dev, comm, "lattice", text, l->features.volume ? sources_volume : sources);
     free(text);
     create_state(l);

@@ -29,7 +29,7 @@ static void create_release(struct lattice_break *b)
     buffer_init(&b->fresh, "lattice fresh breaks");
     buffer_init(&b->released, "lattice released");
     if (!l->features.energy) return;
-    char *text = lattice_features_options(&l->features, l->layout->run), *options = fail_format("%s -DWITH_SUMS=1", text);
+    char *text = lattice_features_options(&l->features, l->layout), *options = fail_format("%s -DWITH_SUMS=1", text);
     b->program_release = program_build(l->dev, l->comm, "release", options, source);
     free(text);
     free(options);
@@ -57,7 +57,7 @@ struct lattice_break *lattice_break_create(struct lattice *l, const struct latti
     struct lattice_break *b = fail_alloc(sizeof *b);
     int64_t n = (int64_t)l->n_kind * l->n_kind * BREAK_WIDTH;
     double *limit = lattice_features_limits(cells, &l->options);
-    char *text = lattice_features_options(&l->features, l->layout->run);
+    char *text = lattice_features_options(&l->features, l->layout);
     b->l = l;
     b->program = program_build(l->dev, l->comm, "breakage", text, source);
     free(text);

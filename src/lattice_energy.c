@@ -26,7 +26,7 @@ static double *places(const struct lattice *l, const struct lattice_cells *cells
         const struct lattice_grid *g = &cells->grid[cells->kind[cells->kind_of[c->gid[k]]].grid];
         double *p = place + (int64_t)(c->index[k] / c->run) * 4;
         for (int a = 0; a < 3; a++) {
-            int at = cells->at[c->gid[k]][a] - (a == 0 ? c->index[k] % c->run : 0);
+            int at = cells->at[c->gid[k]][a] - (a == c->axis ? c->index[k] % c->run : 0);
             p[a] = g->origin[a] + (at + 0.5) * g->h;
         }
         p[3] = g->h;
@@ -42,7 +42,7 @@ struct lattice_account *lattice_energy_create(struct lattice *l, const struct la
     buffer_init(&a->place, "lattice places");
     buffer_init(&a->partial, "lattice sums");
     if (!l->dev->fp64) return a;
-    char *text = lattice_features_options(&l->features, l->layout->run), *options = fail_format("%s -DWITH_SUMS=1", text);
+    char *text = lattice_features_options(&l->features, l->layout), *options = fail_format("%s -DWITH_SUMS=1", text);
     a->program = program_build(l->dev, l->comm, "energy", options, source);
     free(text);
     free(options);

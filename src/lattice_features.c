@@ -50,13 +50,14 @@ bool lattice_features_value(const struct lattice_features *features, int i)
     return *(const bool *)((const char *)features + feature_table[i].at);
 }
 
-char *lattice_features_options(const struct lattice_features *f, int run)
+char *lattice_features_options(const struct lattice_features *f, const struct lattice_layout *layout)
 {
     return fail_format("-DREAL_IS_FLOAT=%d -DPOSITION_IS_FLOAT=%d -DWITH_TURN=%d -DWITH_VOLUME=%d -DWITH_SHEAR_APART=%d -DWITH_TWIST_APART=%d "
                        "-DWITH_LINK_DAMPING=%d -DWITH_MASS_DAMPING=%d -DWITH_FIX=%d -DWITH_LOADS=%d -DWITH_GRAVITY=%d -DWITH_KINDS=%d -DWITH_RK=%d "
-                       "-DWITH_ENERGY=%d -DWITH_BREAK=%d -DBATCH=%d -DBATCH_WIDTH=%d",
+                       "-DWITH_ENERGY=%d -DWITH_BREAK=%d -DRUN_AXIS=%d -DBATCH=%d -DBATCH_WIDTH=%d",
         f->real_is_float, f->position_is_float, f->turn, f->volume, f->shear_apart, f->twist_apart, f->link_damping, f->mass_damping, f->fix,
-        f->loads, f->gravity, f->kinds, f->rk, f->energy, f->breakage, run, f->real_is_float && f->position_is_float && run % 16 == 0 ? 16 : 8);
+        f->loads, f->gravity, f->kinds, f->rk, f->energy, f->breakage, layout->axis, layout->run,
+        f->real_is_float && f->position_is_float && layout->run % 16 == 0 ? 16 : 8);
 }
 
 double *lattice_features_links(const struct lattice_cells *cells, const struct lattice_options *o)

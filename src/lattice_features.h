@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-#include "lattice_cells.h"
+#include "lattice_layout.h"
 #include "lattice_schemes.h"
 
 /* Rows of loads at time t [s], double [n_row][LOAD_WIDTH]; velocities as means over [from, to] [s], or their values if from == to. */
@@ -25,7 +25,7 @@ struct lattice_options {
     int n_row;                            /* rows of loads; up to 1: no loads */
     lattice_rows_at *rows_at;
     void *context;
-    int run; /* length of runs, a multiple of 8; 0: what suits the body */
+    struct lattice_lay run; /* length 0: what suits the body */
 };
 
 struct lattice_features {
@@ -46,7 +46,7 @@ struct lattice_features lattice_features_of(const struct lattice_cells *cells, c
 const char *lattice_features_name(int i);
 bool lattice_features_value(const struct lattice_features *features, int i);
 /* Build options; the caller frees. */
-char *lattice_features_options(const struct lattice_features *f, int run);
+char *lattice_features_options(const struct lattice_features *f, const struct lattice_layout *layout);
 /* Tables of kernels/lattice_state.h; the caller frees: links [n_kind][n_kind][LINK_WIDTH], cells [n_kind][CELL_WIDTH]. */
 double *lattice_features_links(const struct lattice_cells *cells, const struct lattice_options *o);
 /* Limits [n_kind][n_kind][BREAK_WIDTH]; options have strengths. */

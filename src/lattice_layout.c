@@ -7,7 +7,6 @@
 
 #include "../kernels/lattice_words.h"
 #include "fail.h"
-#include "lattice_places.h"
 
 /* What a run costs beside its places, in places. */
 enum { RUN_COST = 6 };
@@ -30,14 +29,20 @@ struct build {
     struct lattice_layout *l;
 };
 
-int lattice_layout_run(const struct lattice_cells *cells)
+struct lattice_lay lattice_layout_run(const struct lattice_cells *cells)
 {
-    int best = RUN_SHORTEST;
-    int64_t cost = INT64_MAX;
-    for (int run = RUN_SHORTEST; run <= RUN_LONGEST; run += RUN_STEP) {
-        int64_t c = lattice_places_count(cells, run) * (run + RUN_COST);
-        if (c <= cost) best = run;
-        if (c <= cost) cost = c;
+    struct lattice_lay best = {0, RUN_SHORTEST};
+    int64_t least = INT64_MAX;
+    for (int axis = 0; axis < 3; axis++) {
+        int32_t *order = lattice_places_order(cells, axis);
+        for (int length = RUN_SHORTEST; length <= RUN_LONGEST; length += RUN_STEP) {
+            struct lattice_lay run = {axis, length};
+            int64_t cost = lattice_places_count(cells, run, order) * (length + RUN_COST);
+            bool better = cost < least || (cost == least && axis == best.axis);
+            if (better) best = run;
+            if (better) least = cost;
+        }
+        free(order);
     }
     return best;
 }
@@ -65,26 +70,26 @@ static void mark(struct build *b)
 
 static int index_of(const struct build *b, int64_t gid)
 {
-    int run = b->places->run_of[gid], lane = b->cells->at[gid][0] - b->places->place[run].x * b->places->run;
-    return b->local[run] * b->places->run + lane;
+    return b->local[b->places->run_of[gid]] * b->l->run + lattice_places_lane(b->places, b->cells, gid);
 }
 
 static void number_runs(struct build *b)
 {
     struct lattice_layout *l = b->l;
-    int n = 1;
+    int n = 1, axis = b->places->run.axis;
     b->local = fail_alloc((size_t)b->places->n_run * sizeof *b->local);
     for (int64_t i = 0; i < b->cells->n; i++)
         if (b->mark[i]) b->local[b->places->run_of[i]] = 1;
     for (int r = 0; r < b->places->n_run; r++)
         if (b->local[r]) b->local[r] = n++;
-    l->run = b->places->run;
+    l->axis = axis;
+    l->run = b->places->run.length;
     l->n_run = n + 1;
     l->plane = ((int64_t)l->n_run * l->run + 1023 - PLANE_SHIFT) / 1024 * 1024 + PLANE_SHIFT;
     l->base = fail_alloc(4 * (size_t)l->n_run * sizeof *l->base);
     for (int r = 0; r < b->places->n_run; r++)
         for (int f = 0; f < 4 && b->local[r]; f++) {
-            int beside = lattice_places_beside(b->places, r, 1 + f / 2, f % 2 ? 1 : -1);
+            int other = f / 2 + (f / 2 >= axis), beside = lattice_places_beside(b->places, r, other, f % 2 ? 1 : -1);
             if (beside >= 0) l->base[f * l->n_run + b->local[r]] = b->local[beside] * l->run;
         }
 }
@@ -131,7 +136,7 @@ static void fill_info(struct build *b)
 
 /* A run and where it comes in the order of kernels. */
 struct tile {
-    int32_t grid, rows; /* rows: number of the tile along y */
+    int32_t grid, rows; /* rows: number of the tile along the near axis */
     int run;
 };
 
@@ -140,24 +145,24 @@ static int compare_tiles(const void *a, const void *b)
     const struct tile *p = a, *q = b;
     if (p->grid != q->grid) return p->grid < q->grid ? -1 : 1;
     if (p->rows != q->rows) return p->rows < q->rows ? -1 : 1;
-    return p->run < q->run ? -1 : p->run > q->run; /* runs are sorted by grid, z, y, x */
+    return p->run < q->run ? -1 : p->run > q->run; /* runs are sorted by grid, far, near, along */
 }
 
-/* The runs of this rank in the order in which kernels take them: tiles of some rows along y, each through all layers along z, so that the three
- * layers that the links of a row reach stay in a core's cache. */
+/* The runs of this rank in the order in which kernels take them: tiles of some rows along the near axis, each through all layers along the far
+ * one, so that the three layers that the links of a row reach stay in a core's cache. */
 static int *order_runs(const struct build *b)
 {
     const struct lattice_place *p = b->places->place;
     struct tile *tile = fail_alloc((size_t)b->l->n_run * sizeof *tile);
     int *order = fail_alloc((size_t)b->l->n_run * sizeof *order), n = 0, row = 0, longest = 1;
     for (int r = 0; r < b->places->n_run; r++) {
-        row = r > 0 && p[r].grid == p[r - 1].grid && p[r].z == p[r - 1].z && p[r].y == p[r - 1].y ? row + 1 : 1;
+        row = r > 0 && p[r].grid == p[r - 1].grid && p[r].far == p[r - 1].far && p[r].near == p[r - 1].near ? row + 1 : 1;
         if (row > longest) longest = row;
     }
-    int rows = TILE_CELLS / (longest * b->places->run);
+    int rows = TILE_CELLS / (longest * b->l->run);
     if (rows < 1) rows = 1;
     for (int r = 0; r < b->places->n_run; r++)
-        if (b->local[r]) tile[n++] = (struct tile){p[r].grid, p[r].y / rows, b->local[r]};
+        if (b->local[r]) tile[n++] = (struct tile){p[r].grid, p[r].near / rows, b->local[r]};
     qsort(tile, (size_t)n, sizeof *tile, compare_tiles);
     for (int k = 0; k < n; k++) order[k] = tile[k].run;
     free(tile);
@@ -251,7 +256,8 @@ static void list_ghosts(struct build *b)
     free(stamp);
 }
 
-struct lattice_layout *lattice_layout_create(const struct lattice_cells *cells, const int *owner, int rank, int n_rank, int run, int depth)
+struct lattice_layout *lattice_layout_create(
+    const struct lattice_cells *cells, const int *owner, int rank, int n_rank, struct lattice_lay run, int depth)
 {
     struct lattice_layout *l = fail_alloc(sizeof *l);
     struct build b = {.cells = cells, .owner = owner, .rank = rank, .n_rank = n_rank, .depth = depth, .l = l};

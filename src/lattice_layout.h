@@ -1,19 +1,19 @@
-/* Where a rank has its cells: in runs along x, for kernels/lattice_view.h.
+/* Where a rank has its cells: in runs along one of the axes, for kernels/lattice_view.h.
  *
- * A run is `run` places on the grid, aligned on it: run (grid, z, y, x/run). A rank has all runs with a cell that it owns or needs as a ghost,
- * sorted, so that the neighbour in x is the next in memory; one empty run in front and one behind, the first also in place of every neighbouring run
+ * A run is `run` places on the grid, aligned on it (lattice_places.h). A rank has all runs with a cell that it owns or needs as a ghost, sorted, so
+ * that the neighbour along the run is the next in memory; one empty run in front and one behind, the first also in place of every neighbouring run
  * that is not there.
  * Index of a cell: run times length, plus lane. Host only; knows owners, no device and no MPI. */
 #ifndef DEMOCLES_LATTICE_LAYOUT_H
 #define DEMOCLES_LATTICE_LAYOUT_H
 
-#include "lattice_cells.h"
+#include "lattice_places.h"
 
 struct lattice_layout {
-    int run;       /* length of a run: a multiple of 8 */
+    int axis, run; /* of runs: axis, and length, a multiple of 8 */
     int n_run;     /* with the empty ones */
     int64_t plane; /* [cells] from one plane to the next: padded, for powers of two cost half the speed */
-    int *base;     /* [4][n_run] first index of the runs at -y, +y, -z, +z */
+    int *base;     /* [4][n_run] first index of the runs beside: near -, +, far -, + */
     int *info;     /* [n_run] kind of all cells in and around the run; + 256: kinds differ, or cells have loads or fixed DOF */
     int *word;     /* [plane] kernels/lattice_state.h */
     int *row;      /* [plane] row of loads */
@@ -28,10 +28,11 @@ struct lattice_layout {
     int *send, *recv;                               /* [n_send], [n_recv] index */
 };
 
-/* Length of runs that suits the rows of all cells best. */
-int lattice_layout_run(const struct lattice_cells *cells);
+/* Axis and length of runs that suit the rows of all cells best. */
+struct lattice_lay lattice_layout_run(const struct lattice_cells *cells);
 /* owner [n]: rank of each cell. depth: layers of ghosts, 1, or 2 with the volumetric pass. */
-struct lattice_layout *lattice_layout_create(const struct lattice_cells *cells, const int *owner, int rank, int n_rank, int run, int depth);
+struct lattice_layout *lattice_layout_create(
+    const struct lattice_cells *cells, const int *owner, int rank, int n_rank, struct lattice_lay run, int depth);
 void lattice_layout_free(struct lattice_layout *layout);
 
 #endif

@@ -10,48 +10,102 @@ static int32_t floor_div(int32_t a, int32_t b)
     return a >= 0 ? a / b : -1 - (-1 - a) / b;
 }
 
-static struct lattice_place place_of(const struct lattice_cells *c, int64_t i, int run)
+/* The lower and the higher of the other axes. */
+static int near_axis(int axis)
 {
-    return (struct lattice_place){c->kind[c->kind_of[i]].grid, c->at[i][2], c->at[i][1], floor_div(c->at[i][0], run)};
+    return axis == 0 ? 1 : 0;
+}
+static int far_axis(int axis)
+{
+    return axis == 2 ? 1 : 2;
+}
+
+static int grid_of(const struct lattice_cells *c, int64_t i)
+{
+    return c->kind[c->kind_of[i]].grid;
+}
+
+static struct lattice_place place_of(const struct lattice_cells *c, int64_t i, struct lattice_lay run)
+{
+    const int32_t *at = c->at[i];
+    return (struct lattice_place){grid_of(c, i), at[far_axis(run.axis)], at[near_axis(run.axis)], floor_div(at[run.axis], run.length)};
 }
 
 static int compare(const struct lattice_place *a, const struct lattice_place *b)
 {
     if (a->grid != b->grid) return a->grid < b->grid ? -1 : 1;
-    if (a->z != b->z) return a->z < b->z ? -1 : 1;
-    if (a->y != b->y) return a->y < b->y ? -1 : 1;
-    return a->x == b->x ? 0 : a->x < b->x ? -1 : 1;
+    if (a->far != b->far) return a->far < b->far ? -1 : 1;
+    if (a->near != b->near) return a->near < b->near ? -1 : 1;
+    return a->along == b->along ? 0 : a->along < b->along ? -1 : 1;
 }
 
-int64_t lattice_places_count(const struct lattice_cells *cells, int run)
+/* One pass of a sort by counting: by where cells are along an axis, or by grid (axis 3). Cells with the same keep their order. */
+static int32_t *sorted(const struct lattice_cells *c, int32_t *order, int axis)
+{
+    int32_t most = 0, *next = fail_alloc((size_t)c->n * sizeof *next);
+    for (int64_t i = 0; i < c->n; i++) {
+        int32_t key = axis < 3 ? c->at[i][axis] : grid_of(c, i);
+        if (key > most) most = key;
+    }
+    int64_t *begin = fail_alloc(((size_t)most + 2) * sizeof *begin);
+    for (int64_t i = 0; i < c->n; i++) begin[(axis < 3 ? c->at[i][axis] : grid_of(c, i)) + 1]++;
+    for (int32_t k = 0; k < most; k++) begin[k + 1] += begin[k];
+    for (int64_t k = 0; k < c->n; k++) {
+        int32_t i = order[k];
+        next[begin[axis < 3 ? c->at[i][axis] : grid_of(c, i)]++] = i;
+    }
+    free(begin);
+    free(order);
+    return next;
+}
+
+int32_t *lattice_places_order(const struct lattice_cells *cells, int axis)
+{
+    int32_t *order = fail_alloc((size_t)cells->n * sizeof *order);
+    const int by[] = {axis, near_axis(axis), far_axis(axis), 3};
+    for (int64_t i = 0; i < cells->n; i++) order[i] = (int32_t)i;
+    for (int k = 0; k < 4 && axis > 0; k++) order = sorted(cells, order, by[k]); /* along x they are sorted so */
+    return order;
+}
+
+int64_t lattice_places_count(const struct lattice_cells *cells, struct lattice_lay run, const int32_t *order)
 {
     struct lattice_place last = {-1, 0, 0, 0};
     int64_t n = 0;
-    for (int64_t i = 0; i < cells->n; i++) {
-        struct lattice_place p = place_of(cells, i, run);
+    for (int64_t k = 0; k < cells->n; k++) {
+        struct lattice_place p = place_of(cells, order[k], run);
         n += compare(&p, &last) != 0;
         last = p;
     }
     return n;
 }
 
-struct lattice_places *lattice_places_create(const struct lattice_cells *cells, int run)
+struct lattice_places *lattice_places_create(const struct lattice_cells *cells, struct lattice_lay run)
 {
     struct lattice_places *p = fail_alloc(sizeof *p);
+    int32_t *order = lattice_places_order(cells, run.axis);
     p->run = run;
-    p->n_run = (int)lattice_places_count(cells, run);
+    p->n_run = (int)lattice_places_count(cells, run, order);
+    size_t n_cell = (size_t)p->n_run * (size_t)run.length;
     p->place = fail_alloc((size_t)p->n_run * sizeof *p->place);
-    p->cell = fail_alloc((size_t)p->n_run * (size_t)run * sizeof *p->cell);
+    p->cell = fail_alloc(n_cell * sizeof *p->cell);
     p->run_of = fail_alloc((size_t)cells->n * sizeof *p->run_of);
-    memset(p->cell, 0xff, (size_t)p->n_run * (size_t)run * sizeof *p->cell);
-    int k = -1;
-    for (int64_t i = 0; i < cells->n; i++) {
+    memset(p->cell, 0xff, n_cell * sizeof *p->cell);
+    int r = -1;
+    for (int64_t k = 0; k < cells->n; k++) {
+        int32_t i = order[k];
         struct lattice_place here = place_of(cells, i, run);
-        if (k < 0 || compare(&here, &p->place[k]) != 0) p->place[++k] = here;
-        p->run_of[i] = k;
-        p->cell[(int64_t)k * run + cells->at[i][0] - here.x * run] = (int32_t)i;
+        if (r < 0 || compare(&here, &p->place[r]) != 0) p->place[++r] = here;
+        p->run_of[i] = r;
+        p->cell[(int64_t)r * run.length + lattice_places_lane(p, cells, i)] = i;
     }
+    free(order);
     return p;
+}
+
+int lattice_places_lane(const struct lattice_places *p, const struct lattice_cells *cells, int64_t gid)
+{
+    return cells->at[gid][p->run.axis] - p->place[p->run_of[gid]].along * p->run.length;
 }
 
 void lattice_places_free(struct lattice_places *p)
@@ -67,9 +121,9 @@ int lattice_places_beside(const struct lattice_places *p, int run, int axis, int
 {
     struct lattice_place wanted = p->place[run];
     int low = 0, high = p->n_run - 1;
-    if (axis == 0) wanted.x += step;
-    if (axis == 1) wanted.y += step;
-    if (axis == 2) wanted.z += step;
+    if (axis == p->run.axis) wanted.along += step;
+    if (axis == near_axis(p->run.axis)) wanted.near += step;
+    if (axis == far_axis(p->run.axis)) wanted.far += step;
     while (low <= high) {
         int middle = low + (high - low) / 2, order = compare(&p->place[middle], &wanted);
         if (order == 0) return middle;
@@ -82,13 +136,13 @@ int lattice_places_beside(const struct lattice_places *p, int run, int axis, int
 int64_t lattice_places_neighbour(const struct lattice_places *p, const struct lattice_cells *cells, int64_t gid, int face)
 {
     int run = p->run_of[gid], axis = face / 2, step = face % 2 ? 1 : -1;
-    int lane = cells->at[gid][0] - p->place[run].x * p->run;
-    if (axis == 0) {
+    int lane = lattice_places_lane(p, cells, gid), n = p->run.length;
+    if (axis == p->run.axis) {
         lane += step;
-        if (lane < 0 || lane == p->run) run = lattice_places_beside(p, run, 0, step);
-        lane = (lane + p->run) % p->run;
+        if (lane < 0 || lane == n) run = lattice_places_beside(p, run, axis, step);
+        lane = (lane + n) % n;
     } else {
         run = lattice_places_beside(p, run, axis, step);
     }
-    return run < 0 ? -1 : p->cell[(int64_t)run * p->run + lane];
+    return run < 0 ? -1 : p->cell[(int64_t)run * n + lane];
 }

@@ -18,7 +18,7 @@ struct lattice_stress *lattice_stress_create(struct lattice *l, bool extrapolate
 {
     static const char *const source[] = {"link_stress.cl", NULL};
     struct lattice_stress *s = fail_alloc(sizeof *s);
-    char *text = lattice_features_options(&l->features, l->layout->run);
+    char *text = lattice_features_options(&l->features, l->layout);
     s->l = l;
     s->program = program_build(l->dev, l->comm, "stress", text, source);
     free(text);

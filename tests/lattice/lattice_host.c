@@ -19,7 +19,7 @@ static real *reals(double *value, int64_t n)
 struct host *host_create(const struct lattice_cells *cells, const struct lattice_options *options)
 {
     struct host *h = fail_alloc(sizeof *h);
-    struct lattice_places *places = lattice_places_create(cells, 16);
+    struct lattice_places *places = lattice_places_create(cells, (struct lattice_lay){0, 16});
     size_t n = (size_t)cells->n;
     int k = cells->n_kind;
     h->cells = cells;

@@ -46,7 +46,7 @@ int main(int argc, char **argv)
     o.real_is_float = o.position_is_float = argc > 2 && !strcmp(argv[2], "single");
     o.turn = argc > 3 && !strcmp(argv[3], "turn");
     o.scheme = argc > 5 ? (enum lattice_scheme)atoi(argv[5]) : LATTICE_LEAPFROG;
-    o.run = argc > 6 ? atoi(argv[6]) : 0;
+    o.run.length = argc > 6 ? atoi(argv[6]) : 0;
     o.energy = argc > 7;
     struct device *dev = device_open(comm, NULL, false, false);
     struct lattice_cells *cells = bodies_create(1, size, 0.01, 1, bodies_block);

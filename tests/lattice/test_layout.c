@@ -86,14 +86,14 @@ static void check_cell(const struct world *w, int r, int64_t i)
     assert_int_equal(word >> WORD_FIX & 63, w->cells->bits[i] >> 6);
     assert_int_equal(word & 63, d <= 1 ? w->cells->bits[i] & 63 : 0);
     assert_int_equal(l->row[at], w->cells->row[i]);
-    assert_int_equal(at % l->run, w->cells->at[i][0] % l->run);
+    assert_int_equal(at % l->run, w->cells->at[i][l->axis] % l->run);
     assert_true(l->info[run] & RUN_MIXED || (l->info[run] == w->cells->kind_of[i] && !(w->cells->bits[i] >> 6) && !l->row[at]) || d > 1);
     if (d == 0) assert_true(is_in(l->force, l->n_force, run));
     if (w->depth == 2 && d <= 1) assert_true(is_in(l->volume, l->n_volume, run));
     for (int f = 0; f < 6 && d < w->depth; f++) {
         if (!(word >> f & 1)) continue;
         int64_t j = brute(w->cells, i, f);
-        int there = f < 2 ? at + (f ? 1 : -1) : l->base[(f - 2) * l->n_run + run] + at % l->run;
+        int side = f - 2 * (f / 2 > l->axis), there = f / 2 == l->axis ? at + (f % 2 ? 1 : -1) : l->base[side * l->n_run + run] + at % l->run;
         assert_int_equal(there, w->where[r * n + j]);
         if (!(l->info[run] & RUN_MIXED)) assert_int_equal(w->cells->kind_of[j], w->cells->kind_of[i]);
         if (d == 0 && is_in(l->force, l->n_force_interior, run)) {
@@ -105,7 +105,7 @@ static void check_cell(const struct world *w, int r, int64_t i)
     if (w->depth == 2 && is_in(l->force, l->n_force_interior, run) && d == 0) assert_true(is_in(l->volume, l->n_volume_interior, run));
 }
 
-static void check(struct lattice_cells *cells, int n_rank, int depth, int run, bool scattered)
+static void check(struct lattice_cells *cells, int n_rank, int depth, int axis, int run, bool scattered)
 {
     struct world w = {.cells = cells, .n_rank = n_rank, .depth = depth};
     int64_t n = cells->n, n_owned = 0;
@@ -114,7 +114,7 @@ static void check(struct lattice_cells *cells, int n_rank, int depth, int run, b
     for (int64_t i = 0; i < n; i++)
         w.owner[i] = scattered ? (int)(mpi_check_random((uint64_t)i) % (uint64_t)n_rank) : (int)(cells->at[i][0] / 5 + cells->at[i][2] / 4) % n_rank;
     for (int r = 0; r < n_rank; r++) {
-        w.l[r] = lattice_layout_create(cells, w.owner, r, n_rank, run, depth);
+        w.l[r] = lattice_layout_create(cells, w.owner, r, n_rank, (struct lattice_lay){axis, run}, depth);
         n_owned += w.l[r]->n_owned;
         assert_true(w.l[r]->plane >= (int64_t)w.l[r]->n_run * run && w.l[r]->plane % 1024 == 80);
         for (int k = 0; k < run; k++) assert_true(w.l[r]->word[k] == 0 && w.l[r]->word[(w.l[r]->n_run - 1) * run + k] == 0);
@@ -140,10 +140,11 @@ static void one_rank(void **state)
     const int size[3] = {37, 5, 4};
     struct lattice_cells *block = bodies_create(1, size, 0.1, 1, bodies_block), *mixed = bodies_create(2, size, 0.1, 2, bodies_mixed);
     (void)state;
-    for (int run = 16; run <= 64; run *= 2) {
-        check(block, 1, 1, run, false);
-        check(mixed, 1, 2, run, false);
-    }
+    for (int run = 16; run <= 48; run += 16)
+        for (int axis = 0; axis < 3; axis++) {
+            check(block, 1, 1, axis, run, false);
+            check(mixed, 1, 2, axis, run, false);
+        }
     bodies_free(block);
     bodies_free(mixed);
 }
@@ -155,9 +156,9 @@ static void ranks(void **state)
     (void)state;
     for (int n = 2; n <= MOST_RANKS; n += n < 4 ? 1 : 4)
         for (int depth = 1; depth <= 2; depth++) {
-            check(voxels, n, depth, 16, false);
-            check(voxels, n, depth, 16, true);
-            check(mixed, n, depth, 32, false);
+            check(voxels, n, depth, n % 3, 16, false);
+            check(voxels, n, depth, (n + depth) % 3, 24, true);
+            check(mixed, n, depth, 0, 32, false);
         }
     bodies_free(voxels);
     bodies_free(mixed);
@@ -165,11 +166,14 @@ static void ranks(void **state)
 
 static void run_lengths(void **state)
 {
-    const int size[3][3] = {{30, 8, 8}, {16, 8, 8}, {64, 8, 8}}, best[3] = {32, 16, 64};
+    const int size[5][3] = {{30, 8, 8}, {16, 8, 8}, {64, 8, 8}, {100, 30, 30}, {6, 5, 40}};
+    const struct lattice_lay best[5] = {{0, 32}, {0, 16}, {0, 64}, {0, 104}, {2, 40}};
     (void)state;
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 5; k++) {
         struct lattice_cells *c = bodies_create(1, size[k], 0.1, 1, bodies_block);
-        assert_int_equal(lattice_layout_run(c), best[k]);
+        struct lattice_lay run = lattice_layout_run(c);
+        assert_int_equal(run.axis, best[k].axis);
+        assert_int_equal(run.length, best[k].length);
         bodies_free(c);
     }
 }

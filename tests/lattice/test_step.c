@@ -159,11 +159,11 @@ static void compare_ledger(const struct lattice *l, const struct host *h)
 }
 
 /* Observed at steps 0, 3 and 7; between them no stress is asked for, after step 3 it must not matter that it was. */
-static void run(enum lattice_scheme scheme, bool one_lane, int run_length)
+static void run(enum lattice_scheme scheme, bool one_lane, int axis, int length)
 {
     struct link_material material[2];
     double alpha[2];
-    struct lattice_options o = {.scheme = scheme, .run = run_length};
+    struct lattice_options o = {.scheme = scheme, .run = {axis, length}};
     struct link_strength strength[4];
     struct lattice_cells *cells = make(&o, material, alpha, strength);
     struct device *dev = device_open(comm, NULL, false, false);
@@ -197,30 +197,31 @@ static void run(enum lattice_scheme scheme, bool one_lane, int run_length)
 static void leapfrog(void **state)
 {
     (void)state;
-    for (int one_lane = 0; one_lane < 2; one_lane++)
-        for (int length = 16; length <= 64; length *= 2) run(LATTICE_LEAPFROG, one_lane, length);
+    run(LATTICE_LEAPFROG, true, 0, 64);
+    run(LATTICE_LEAPFROG, true, 1, 24);
+    run(LATTICE_LEAPFROG, false, 2, 32);
 }
 static void pefrl(void **state)
 {
     (void)state;
-    run(LATTICE_PEFRL, true, 16);
-    run(LATTICE_PEFRL, false, 32);
+    run(LATTICE_PEFRL, true, 2, 16);
+    run(LATTICE_PEFRL, false, 0, 32);
 }
 static void vefrl(void **state)
 {
     (void)state;
-    run(LATTICE_VEFRL, true, 16);
+    run(LATTICE_VEFRL, true, 0, 16);
 }
 static void rk4(void **state)
 {
     (void)state;
-    run(LATTICE_RK4, true, 32);
-    run(LATTICE_RK4, false, 16);
+    run(LATTICE_RK4, true, 0, 32);
+    run(LATTICE_RK4, false, 1, 16);
 }
 static void rkn4(void **state)
 {
     (void)state;
-    run(LATTICE_RKN4, true, 16);
+    run(LATTICE_RKN4, true, 2, 16);
 }
 
 int main(void)
