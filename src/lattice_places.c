@@ -68,15 +68,24 @@ int32_t *lattice_places_order(const struct lattice_cells *cells, int axis)
     return order;
 }
 
-int64_t lattice_places_count(const struct lattice_cells *cells, struct lattice_lay run, const int32_t *order)
+int64_t lattice_places_count(const struct lattice_cells *cells, struct lattice_lay run, const int32_t *order, int64_t *n_mixed)
 {
     struct lattice_place last = {-1, 0, 0, 0};
-    int64_t n = 0;
+    int64_t n = 0, mixed = 0;
+    int kind = 0, is_mixed = 0;
     for (int64_t k = 0; k < cells->n; k++) {
-        struct lattice_place p = place_of(cells, order[k], run);
-        n += compare(&p, &last) != 0;
+        int32_t i = order[k];
+        struct lattice_place p = place_of(cells, i, run);
+        if (compare(&p, &last) != 0) {
+            n++;
+            mixed += is_mixed;
+            is_mixed = 0;
+            kind = cells->kind_of[i];
+        }
+        is_mixed |= cells->kind_of[i] != kind || cells->bits[i] & CELL_FIXED || (cells->row && cells->row[i]);
         last = p;
     }
+    if (n_mixed) *n_mixed = mixed + is_mixed;
     return n;
 }
 
@@ -85,7 +94,7 @@ struct lattice_places *lattice_places_create(const struct lattice_cells *cells, 
     struct lattice_places *p = fail_alloc(sizeof *p);
     int32_t *order = lattice_places_order(cells, run.axis);
     p->run = run;
-    p->n_run = (int)lattice_places_count(cells, run, order);
+    p->n_run = (int)lattice_places_count(cells, run, order, NULL);
     size_t n_cell = (size_t)p->n_run * (size_t)run.length;
     p->place = fail_alloc((size_t)p->n_run * sizeof *p->place);
     p->cell = fail_alloc(n_cell * sizeof *p->cell);

@@ -27,8 +27,8 @@ struct lattice_places *lattice_places_create(const struct lattice_cells *cells, 
 void lattice_places_free(struct lattice_places *p);
 /* The cells in the order of runs along an axis; the caller frees. [n] */
 int32_t *lattice_places_order(const struct lattice_cells *cells, int axis);
-/* How many such runs there are. order: along run.axis. */
-int64_t lattice_places_count(const struct lattice_cells *cells, struct lattice_lay run, const int32_t *order);
+/* How many such runs there are. order: along run.axis. n_mixed: of them those of several kinds, or with loads or fixed DOF; NULL: not asked for. */
+int64_t lattice_places_count(const struct lattice_cells *cells, struct lattice_lay run, const int32_t *order, int64_t *n_mixed);
 /* Place of a cell in its run. */
 int lattice_places_lane(const struct lattice_places *p, const struct lattice_cells *cells, int64_t gid);
 /* Number of the run beside: axis 0, 1, 2; step -1 or 1; -1: there is none. */
