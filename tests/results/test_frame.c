@@ -182,7 +182,7 @@ static void test_shared_columns_are_links(void **state)
 static void test_whole_frame_passes_check(void **state)
 {
     (void)state;
-    char *wrong = snapshot_check(path);
+    char *wrong = snapshot_check(NULL, path);
     if (wrong) print_message("%s\n", wrong);
     assert_null(wrong);
     assert_int_not_equal(access(dir, F_OK), -1);
