@@ -132,7 +132,8 @@ static int close_run(struct sim *s, bool stopped)
 {
     bool restless = s->rest.next > 0 && !s->rest.reached && !stopped && (double)s->step * s->dt >= s->scene->time.end * (1 - 1e-12);
     int code = stopped ? EXIT_STOPPED : restless ? EXIT_NUMERICS : EXIT_DONE;
-    if (stopped) log_print(s->log, "stopped on request at step %lld; a frame was written", (long long)s->step);
+    if (stopped)
+        log_print(s->log, "stopped on request at step %lld; a frame was written, `democles resume %s` goes on", (long long)s->step, s->options->dir);
     if (s->rest.reached) log_print(s->log, "at rest after step %lld", (long long)s->step);
     output_close(s, code);
     if (restless)
