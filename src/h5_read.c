@@ -15,6 +15,8 @@ struct h5_reader *h5_open(const char *path)
 {
     struct h5_reader *reader = fail_alloc(sizeof *reader);
     reader->path = fail_strdup(path);
+    H5Eget_auto2(H5E_DEFAULT, &reader->saved_print, &reader->saved_data);
+    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
     reader->file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
     if (reader->file < 0) give_up(reader, "", "the file");
     return reader;
@@ -24,6 +26,7 @@ void h5_close(struct h5_reader *reader)
 {
     if (!reader) return;
     H5Fclose(reader->file);
+    H5Eset_auto2(H5E_DEFAULT, reader->saved_print, reader->saved_data);
     free(reader->path);
     free(reader);
 }

@@ -13,6 +13,8 @@
 struct h5_reader {
     hid_t file;
     char *path;
+    H5E_auto2_t saved_print; /* the program's HDF5 error printing, restored at the end */
+    void *saved_data;
 };
 
 struct h5_reader *h5_open(const char *path);

@@ -72,10 +72,16 @@ struct resume *resume_open(const struct comm *comm, struct log *log, const char 
     return r;
 }
 
+void resume_close(struct resume *r)
+{
+    h5_close(r->reader);
+    r->reader = NULL;
+}
+
 void resume_free(struct resume *r)
 {
     if (!r) return;
-    h5_close(r->reader);
+    resume_close(r);
     scene_free(r->before);
     free(r->dir);
     free(r->path);

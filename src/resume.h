@@ -14,11 +14,11 @@
 struct sim;
 
 struct resume {
-    struct h5_reader *reader;
-    char *dir, *path;     /* of the results, of the frame */
-    int64_t index, step;  /* number in the frame's name */
-    double dt;            /* [s] */
-    struct scene *before; /* as the frame has it, without changes */
+    struct h5_reader *reader; /* until resume_close */
+    char *dir, *path;         /* of the results, of the frame */
+    int64_t index, step;      /* number in the frame's name */
+    double dt;                /* [s] */
+    struct scene *before;     /* as the frame has it, without changes */
 };
 
 /* Finds and opens the newest frame of `dir` that is whole; warns of each newer one that is not, and says what is wrong with it. Where there is none
@@ -26,6 +26,8 @@ struct resume {
 struct resume *resume_open(const struct comm *comm, struct log *log, const char *dir);
 /* The scene to go on with: the frame's with `set` applied. A key that cannot change, or a mistake: all stop with EXIT_SCENE. Collective. */
 struct scene *resume_scene(const struct comm *comm, struct resume *resume, const char *const *set, int n_set);
+/* Once all is read. */
+void resume_close(struct resume *resume);
 void resume_free(struct resume *resume); /* NULL is fine */
 
 /* Numbers of the run as a whole that every frame has: steps of the last looks, counters. */

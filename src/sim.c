@@ -55,6 +55,7 @@ static void begin(struct sim *s)
         s->ops->check_limit(s);
         return;
     }
+    resume_close(s->options->from);
     s->begun_at = s->step;
     s->observed = true;
     log_print(s->log, "goes on from step %lld, t = %.9g s, of '%s'", (long long)s->step, (double)s->step * s->dt, s->from->path);
