@@ -105,13 +105,6 @@ const char *h5_check_part(hid_t dataset, int part, int n_part, uint64_t *sum, ui
     return wrong;
 }
 
-const char *h5_check_dataset(hid_t dataset)
-{
-    uint64_t sum, expected;
-    const char *wrong = h5_check_part(dataset, 0, 1, &sum, &expected);
-    return wrong || sum == expected ? wrong : h5_check_wrong;
-}
-
 struct words {
     char inner[256], outer[256];
 };
