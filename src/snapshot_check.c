@@ -86,7 +86,7 @@ static char *open_and_walk(struct walk *w, const char *path)
     H5E_auto2_t print;
     void *print_data;
     setenv("HDF5_USE_FILE_LOCKING", "FALSE", 0); /* frames are whole once they have their name, and some file systems know no locks */
-    H5dont_atexit(); /* HDF5 1.10 loses count of a damaged file, and would complain on stderr when the program ends */
+    H5dont_atexit();                             /* HDF5 1.10 loses count of a damaged file, and would complain on stderr when the program ends */
     H5Eget_auto2(H5E_DEFAULT, &print, &print_data);
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
     hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
