@@ -97,13 +97,15 @@ static void print_time(const struct scene *scene, const struct walls *walls, con
 
 void check_output(const struct scene *scene)
 {
-    double frame = scene->output.every, checkpoint = scene->output.checkpoint_every;
-    double every = frame > 0 && checkpoint > 0 ? fmin(frame, checkpoint) : fmax(frame, checkpoint);
+    double every[] = {scene->output.every, scene->output.checkpoint_every}, n = 0;
     printf("\noutput: frames at the start, at the end");
-    if (every > 0) {
-        every = fmax(every, scene->time.step); /* no more than one in a step */
-        printf(" and every %g s, %.0f in all", every, floor(scene->time.end / every * (1 - 1e-9)) + 2);
+    for (int k = 0; k < 2; k++) {
+        if (every[k] <= 0) continue;
+        every[k] = fmax(every[k], scene->time.step); /* no more than one in a step */
+        n += floor(scene->time.end / every[k] * (1 - 1e-9));
+        printf(" and every %g s", every[k]);
     }
+    if (n > 0) printf(", %s%.0f in all", every[0] > 0 && every[1] > 0 ? "up to " : "", n + 2);
     printf("\n");
     for (int k = 0; k < scene->n_measure; k++) printf("    %s.csv every %g s\n", scene->measure[k].name, scene->measure[k].every);
 }

@@ -14,7 +14,7 @@ struct contact_layout {
 };
 struct contact_layout contact_layout(struct device *dev, const struct program *program);
 
-/* Contacts that came with elements from other ranks (or lie in a frame), by arrival: rows as in pairs.cl. */
+/* Contacts that came with elements from other ranks, by arrival: rows as in pairs.cl. */
 struct contact_arrivals {
     int64_t n; /* elements */
     int64_t n_contact;

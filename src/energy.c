@@ -2,9 +2,8 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-#include "../kernels/ledger.h"
-#include "../kernels/sums.h"
 #include "fail.h"
 #include "integer_sums.h"
 #include "sim.h"
@@ -221,6 +220,31 @@ void energy_moved(struct sim *s, int64_t n_removed)
     integer_sums_add(&e->total.wrapped, e->gravity_before, 1);
     integer_sums_add(&e->total.wrapped, after[SUMS_GRAVITY], -1);
     integer_sums_carry(&e->total.wrapped);
+}
+
+static struct sum *total_at(struct totals *t, int k)
+{
+    return k < LEDGER_WIDTH ? &t->taken[k] : k == LEDGER_WIDTH ? &t->removed : &t->wrapped;
+}
+
+static void put_sum(struct sum sum, int64_t out[SUMS_WIDTH])
+{
+    integer_sums_carry(&sum);
+    const int64_t one[SUMS_WIDTH] = {sum.hi, sum.mid, sum.lo, sum.bad};
+    memcpy(out, one, sizeof one);
+}
+
+void energy_totals(const struct sim *s, int64_t total[ENERGY_TOTALS][SUMS_WIDTH])
+{
+    for (int k = 0; k < ENERGY_TOTALS; k++) put_sum(*total_at(&s->energy->total, k), total[k]);
+    comm_sum_i64(s->comm, total[0], ENERGY_TOTALS * SUMS_WIDTH);
+    for (int k = 0; k < ENERGY_TOTALS; k++) put_sum((struct sum){total[k][0], total[k][1], total[k][2], total[k][3]}, total[k]);
+}
+
+void energy_restore(struct sim *s, const int64_t total[ENERGY_TOTALS][SUMS_WIDTH])
+{
+    for (int k = 0; k < ENERGY_TOTALS; k++)
+        *total_at(&s->energy->total, k) = s->comm->rank > 0 ? (struct sum){0} : (struct sum){total[k][0], total[k][1], total[k][2], total[k][3]};
 }
 
 void energy_now(struct sim *s, struct energy_sums *out)

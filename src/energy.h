@@ -11,6 +11,9 @@
 
 #include <stdint.h>
 
+#include "../kernels/ledger.h"
+#include "../kernels/sums.h"
+
 struct device;
 struct sim;
 struct energy; /* totals since the start, on this rank */
@@ -37,6 +40,11 @@ void energy_collect(struct sim *s);
 /* After owners_move, while the lists are still the old ones: elements in s->owners->removed, n_removed on all ranks together, and walls that end at
  * s->step, leave with what they have. An element's velocity is taken half a step on, by gravity alone. Collective. */
 void energy_moved(struct sim *s, int64_t n_removed);
+
+/* Totals since the start, of all ranks together, as whole numbers: for a frame, and back from one. */
+enum { ENERGY_TOTALS = LEDGER_WIDTH + 2 };
+void energy_totals(const struct sim *s, int64_t total[ENERGY_TOTALS][SUMS_WIDTH]);  /* collective */
+void energy_restore(struct sim *s, const int64_t total[ENERGY_TOTALS][SUMS_WIDTH]); /* on rank 0 these, on the others none */
 
 /* The state on the device is an observed one. Collective. */
 void energy_now(struct sim *s, struct energy_sums *out);

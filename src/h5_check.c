@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+const char h5_check_wrong[] = "its checksum is wrong";
+
 static uint64_t bits_at(enum column_type type, const void *data, int64_t i)
 {
     uint64_t wide;
@@ -47,37 +49,57 @@ static enum column_type type_of(hid_t stored, hid_t *memory)
     return type;
 }
 
-static const char *compare(hid_t dataset, hid_t stored, hid_t space, uint64_t expected)
+/* Adds up rows [begin, end) of a dataset, some at a time. NULL, or what is wrong. */
+static const char *sum_rows(hid_t dataset, hid_t memory, enum column_type type, const hsize_t shape[2], hsize_t begin, hsize_t end, uint64_t *sum)
 {
-    hid_t memory;
-    enum column_type type = type_of(stored, &memory);
-    hssize_t n = H5Sget_simple_extent_npoints(space);
-    if (memory < 0 || n < 0) return "its type is none that democles writes";
-    size_t size = H5Tget_size(memory);
-    /* A damaged header may claim any size: never ask for more than the file can hold. */
-    if ((hsize_t)n * size > H5Dget_storage_size(dataset)) {
-        H5Tclose(memory);
-        return "it is shorter than its header says";
+    enum { PIECE = 1 << 24 }; /* [byte] read at once */
+    size_t row_bytes = shape[1] * H5Tget_size(memory), per_row = row_bytes / column_type_size(type);
+    hsize_t step = row_bytes > 0 && PIECE / row_bytes > 0 ? PIECE / row_bytes : 1;
+    hid_t space = H5Dget_space(dataset);
+    int rank = H5Sget_simple_extent_ndims(space);
+    void *data = fail_alloc((end - begin < step ? end - begin : step) * row_bytes);
+    bool good = true;
+    for (hsize_t at = begin; good && at < end; at += step) {
+        hsize_t start[2] = {at, 0}, count[2] = {end - at < step ? end - at : step, shape[1]};
+        hid_t here = H5Screate_simple(rank, count, NULL);
+        good = H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL) >= 0 &&
+               H5Dread(dataset, memory, here, space, H5P_DEFAULT, data) >= 0;
+        H5Sclose(here);
+        if (good) *sum += h5_check_sum(type, data, (int64_t)(count[0] * per_row), (int64_t)(at * per_row));
     }
-    void *data = fail_alloc((size_t)n * size);
-    herr_t code = H5Dread(dataset, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, data);
-    uint64_t found = h5_check_sum(type, data, (int64_t)((size_t)n * size / column_type_size(type)), 0);
     free(data);
-    H5Tclose(memory);
-    if (code < 0) return "cannot be read";
-    return found == expected ? NULL : "its checksum is wrong";
+    H5Sclose(space);
+    return good ? NULL : "cannot be read";
 }
 
-const char *h5_check_dataset(hid_t dataset)
+static const char *sum_part(hid_t dataset, hid_t stored, hid_t space, int part, int n_part, uint64_t *sum)
 {
+    hsize_t shape[2] = {0, 1};
+    int rank = H5Sget_simple_extent_ndims(space);
+    if (rank < 1 || rank > 2 || H5Sget_simple_extent_dims(space, shape, NULL) < 0) return "its shape is none that democles writes";
+    hid_t memory;
+    enum column_type type = type_of(stored, &memory);
+    if (memory < 0) return "its type is none that democles writes";
+    /* A damaged header may claim any size: never ask for more than the file can hold. */
+    hsize_t stored_bytes = H5Dget_storage_size(dataset), row = shape[1] * H5Tget_size(memory);
+    const char *wrong = row == 0 || shape[0] > stored_bytes / row ? "it is shorter than its header says" : NULL;
+    hsize_t begin = shape[0] * (hsize_t)part / (hsize_t)n_part, end = shape[0] * ((hsize_t)part + 1) / (hsize_t)n_part;
+    if (shape[0] == 0) wrong = NULL;
+    else if (!wrong && begin < end) wrong = sum_rows(dataset, memory, type, shape, begin, end, sum);
+    H5Tclose(memory);
+    return wrong;
+}
+
+const char *h5_check_part(hid_t dataset, int part, int n_part, uint64_t *sum, uint64_t *expected)
+{
+    *sum = *expected = 0;
     if (H5Aexists(dataset, "checksum") <= 0) return "it has no checksum";
-    uint64_t expected = 0;
     hid_t attribute = H5Aopen(dataset, "checksum", H5P_DEFAULT);
-    herr_t code = attribute < 0 ? -1 : H5Aread(attribute, H5T_NATIVE_UINT64, &expected);
+    herr_t code = attribute < 0 ? -1 : H5Aread(attribute, H5T_NATIVE_UINT64, expected);
     if (attribute >= 0) H5Aclose(attribute);
     if (code < 0) return "its checksum cannot be read";
     hid_t stored = H5Dget_type(dataset), space = H5Dget_space(dataset);
-    const char *wrong = stored < 0 || space < 0 ? "its header cannot be read" : compare(dataset, stored, space, expected);
+    const char *wrong = stored < 0 || space < 0 ? "its header cannot be read" : sum_part(dataset, stored, space, part, n_part, sum);
     if (stored >= 0) H5Tclose(stored);
     if (space >= 0) H5Sclose(space);
     return wrong;

@@ -10,9 +10,11 @@
  * digest.h. Independent of how the rows are spread over ranks. data [n]; `begin`: flat index of the first number. Text: its bytes as U8. */
 uint64_t h5_check_sum(enum column_type type, const void *data, int64_t n, int64_t begin);
 
-/* Reads a dataset of a file (any of the column types, or a fixed-length string) and compares its attribute `checksum`. Serial.
- * Returns NULL if they agree, else what is wrong, as static text. */
-const char *h5_check_dataset(hid_t dataset);
+/* Reads one of n_part parts of the rows of a dataset (any of the column types, or a fixed-length string) and gives its sum; those of all parts have
+ * to add up to `expected`, the attribute `checksum`. Not collective. Returns NULL, or why that cannot be told, as static text. */
+const char *h5_check_part(hid_t dataset, int part, int n_part, uint64_t *sum, uint64_t *expected);
+/* What is said where they do not add up. */
+extern const char h5_check_wrong[];
 
 /* HDF5's error stack in short: what was tried, and the innermost reason. Static storage, overwritten by the next call. */
 const char *h5_check_error(void);

@@ -255,6 +255,7 @@ static uint64_t sum_of_ranks(const struct comm *comm, uint64_t mine)
 void h5_column(struct h5_writer *writer, hid_t parent, const struct column *column, struct h5_rows rows)
 {
     int width = column->width;
+    writer->n_dataset++;
     hid_t dataset = create_dataset(writer, parent, column->name, stored_type(column->type), width, rows.total);
     write_pieces(writer, dataset, memory_type(column->type), width, rows, column->data);
     uint64_t mine = h5_check_sum(column->type, column->data, rows.mine * width, rows.begin * width);
@@ -264,6 +265,7 @@ void h5_column(struct h5_writer *writer, hid_t parent, const struct column *colu
 
 void h5_text(struct h5_writer *writer, hid_t parent, const char *name, const char *description, const char *text)
 {
+    writer->n_dataset++;
     struct h5_rows rows = {.mine = writer->comm->rank == 0, .begin = writer->comm->rank > 0, .total = 1};
     hid_t type = text_type(text), dataset = create_dataset(writer, parent, name, type, 1, rows.total);
     write_pieces(writer, dataset, type, 1, rows, text);
@@ -274,5 +276,6 @@ void h5_text(struct h5_writer *writer, hid_t parent, const char *name, const cha
 
 void h5_link(struct h5_writer *writer, const char *path, hid_t to, const char *name)
 {
+    writer->n_dataset++;
     insist(writer, H5Lcreate_hard(writer->file, path, to, name, H5P_DEFAULT, H5P_DEFAULT) >= 0, "link ", name);
 }

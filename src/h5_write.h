@@ -15,6 +15,7 @@ struct h5_writer {
     hid_t file, transfer;    /* transfer: the property list of collective writes */
     char *path, *tmp;        /* final name, and name while it is written */
     int fd;                  /* rank 0: the file seen by POSIX, to reserve space and to sync; else -1 */
+    int64_t n_dataset;       /* written so far, links too */
     size_t piece;            /* largest number of bytes per rank and H5Dwrite: MPI counts in int */
     H5E_auto2_t saved_print; /* the program's HDF5 error printing, restored at the end */
     void *saved_data;

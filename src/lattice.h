@@ -63,6 +63,11 @@ struct lattice_motion {
 void lattice_read(const struct lattice *l, const struct lattice_motion *m);
 /* The other way, at the start and after an observed step: what is not NULL. */
 void lattice_write(struct lattice *l, const struct lattice_motion *m);
+/* Of an observed step of a scheme that ends with a kick: velocities before that kick, from which the run goes on (forces of damped links are
+ * theirs). */
+void lattice_read_before(const struct lattice *l, const struct lattice_motion *before);
+/* All of an observed step; `before` as above, unused by other schemes. */
+void lattice_write_observed(struct lattice *l, int64_t step, const struct lattice_motion *m, const struct lattice_motion *before);
 /* Digest (digest.h) over u, v, q or theta, w of the observed state; returns how many cells have a NaN. Collective. */
 int64_t lattice_digest(const struct lattice *l, uint64_t *digest);
 
@@ -76,6 +81,8 @@ void lattice_put(struct lattice *l, struct buffer *buffer, bool is_float, const 
 struct launch *lattice_launch(struct lattice *l, const struct program *program, const char *kernel, const struct buffer *list);
 /* Plane `number` of a buffer, of this rank's cells in the order of layout->gid; the caller frees. */
 double *lattice_read_plane(const struct lattice *l, const struct buffer *buffer, bool is_float, int64_t number);
+/* The other way; value [n_owned], `width` numbers from one to the next. */
+void lattice_write_plane(struct lattice *l, struct buffer *buffer, bool is_float, int64_t number, const double *value, int width);
 
 /* Makes the rows of loads those of time t, enqueued before the next kernels (lattice_rows.c). */
 void lattice_rows_create(struct lattice *l);

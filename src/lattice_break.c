@@ -1,6 +1,7 @@
 #include "lattice_break.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "../kernels/lattice_words.h"
 #include "fail.h"
@@ -132,6 +133,37 @@ void lattice_break_read(const struct lattice_break *b, int32_t *links, int32_t *
 {
     if (links) read_ints(b->l, &b->l->word, CELL_LINKS, links);
     if (fate) read_ints(b->l, &b->fate, -1, fate);
+}
+
+/* Bits of the mask, the others stay. */
+static void write_ints(struct lattice *l, struct buffer *buffer, int32_t mask, const int32_t *value)
+{
+    size_t bytes = (size_t)l->layout->plane * sizeof(int32_t);
+    int32_t *raw = fail_alloc(bytes);
+    buffer_read(l->dev, buffer, 0, bytes, raw);
+    for (int64_t k = 0; k < l->layout->n_owned; k++) raw[l->layout->index[k]] = (raw[l->layout->index[k]] & ~mask) | (value[k] & mask);
+    buffer_write(l->dev, buffer, 0, bytes, raw);
+    free(raw);
+}
+
+void lattice_break_write(struct lattice_break *b, const int32_t *links, const int32_t *fate)
+{
+    write_ints(b->l, &b->l->word, CELL_LINKS, links);
+    write_ints(b->l, &b->fate, -1, fate);
+}
+
+void lattice_break_read_release(const struct lattice_break *b, int32_t *fresh, double *released)
+{
+    double *plane = lattice_read_plane(b->l, &b->released, false, 0);
+    memcpy(released, plane, (size_t)b->l->layout->n_owned * sizeof *released);
+    read_ints(b->l, &b->fresh, -1, fresh);
+    free(plane);
+}
+
+void lattice_break_write_release(struct lattice_break *b, const int32_t *fresh, const double *released)
+{
+    write_ints(b->l, &b->fresh, -1, fresh);
+    lattice_write_plane(b->l, &b->released, false, 0, released, 1);
 }
 
 void lattice_break_count(const struct lattice_break *b, int64_t count[LATTICE_BREAK_MODES])

@@ -29,5 +29,10 @@ void lattice_break_count(const struct lattice_break *b, int64_t count[LATTICE_BR
 /* Of this rank's cells in the order of layout->gid, [n_owned] each; NULL is left out. links: those left, LINK_BIT of kernels/law_volume.h; fate: how
  * those at its upper faces broke (kernels/lattice_words.h). */
 void lattice_break_read(const struct lattice_break *b, int32_t *links, int32_t *fate);
+/* The other way, before the first step. */
+void lattice_break_write(struct lattice_break *b, const int32_t *links, const int32_t *fate);
+/* What the account of released energy has of each cell (kernels/link_release.cl), and the other way; features.energy only. */
+void lattice_break_read_release(const struct lattice_break *b, int32_t *fresh, double *released);
+void lattice_break_write_release(struct lattice_break *b, const int32_t *fresh, const double *released);
 
 #endif

@@ -78,6 +78,20 @@ void lattice_energy_free(struct lattice_account *a)
     free(a);
 }
 
+void lattice_energy_opened(const struct lattice_account *a, double with[LATTICE_ENERGY_OPENED])
+{
+    with[0] = a->work;
+    with[1] = a->links;
+    with[2] = a->mass;
+}
+
+void lattice_energy_reopen(struct lattice_account *a, const double with[LATTICE_ENERGY_OPENED])
+{
+    a->work = with[0];
+    a->links = with[1];
+    a->mass = with[2];
+}
+
 void lattice_energy_now(struct lattice_account *a, struct lattice_energy *out)
 {
     struct sum sum[ACCOUNT_WIDTH] = {{0}};

@@ -24,6 +24,10 @@ struct lattice_account;
  * Collective. */
 struct lattice_account *lattice_energy_create(struct lattice *l, const struct lattice_cells *cells);
 void lattice_energy_free(struct lattice_account *a); /* NULL is fine */
+/* What was in the ledgers when the account was opened: work, and what damping of links and of masses took [J]; and the other way. */
+enum { LATTICE_ENERGY_OPENED = 3 };
+void lattice_energy_opened(const struct lattice_account *a, double with[LATTICE_ENERGY_OPENED]);
+void lattice_energy_reopen(struct lattice_account *a, const double with[LATTICE_ENERGY_OPENED]);
 /* Collective. */
 void lattice_energy_now(struct lattice_account *a, struct lattice_energy *out);
 

@@ -5,9 +5,11 @@
 #include <string.h>
 
 #include "fail.h"
+#include "lattice_restore.h"
+#include "resume.h"
 #include "snapshot.h"
 
-enum { CORNERS = 8, FIELDS = 16 };
+enum { CORNERS = 8 };
 
 static void read_breakage(const struct sim *s, struct lattice_state *t)
 {
@@ -106,35 +108,22 @@ static int32_t *integers(const struct sim *s, const struct lattice_state *t, con
     return value;
 }
 
-/* Columns under construction, and the memory that they own. */
-struct fields {
-    struct column column[FIELDS];
-    int n, n_own;
-    void *own[FIELDS];
-};
-
-static void add(struct fields *f, const char *name, const char *unit, const char *text, enum column_type type, int width, const void *data)
-{
-    f->column[f->n++] = (struct column){name, unit, text, type, width, data};
-}
-
-static void shown_fields(const struct sim *s, const struct lattice_state *t, struct fields *f)
+static void shown_fields(const struct sim *s, const struct lattice_state *t, struct sheet *f)
 {
     for (int k = 0; k < s->scene->output.n_field; k++) {
         const char *name = s->scene->output.field[k];
         if (!strcmp(name, "displacement")) continue; /* by corner */
-        if (!strcmp(name, "velocity")) add(f, "velocity", "m/s", "velocity of the centre", COLUMN_F64, 3, t->v);
-        else if (!strcmp(name, "angular_velocity")) add(f, "angular_velocity", "rad/s", "angular velocity", COLUMN_F64, 3, t->w);
+        if (!strcmp(name, "velocity")) sheet_add(f, "velocity", "m/s", "velocity of the centre", COLUMN_F64, 3, t->v);
+        else if (!strcmp(name, "angular_velocity")) sheet_add(f, "angular_velocity", "rad/s", "angular velocity", COLUMN_F64, 3, t->w);
         else if (!strcmp(name, "rotation"))
-            add(f, "rotation", t->turn_width == 4 ? "1" : "rad", t->turn_width == 4 ? "quaternion w, x, y, z" : "small rotation about x, y, z, and 0",
-                COLUMN_F64, 4, t->turn);
-        else if (!strcmp(name, "id")) add(f, "id", "1", "global id", COLUMN_I64, 1, t->gid);
-        else if (!strcmp(name, "stress")) add(f, "stress", "Pa", "stress in the world's axes, rows of the tensor", COLUMN_F64, 9, t->stress);
-        else if (!strcmp(name, "von_mises")) add(f, "von_mises", "Pa", "von Mises' equivalent stress", COLUMN_F64, 1, t->von_mises);
-        else if (!strcmp(name, "broken")) add(f, "broken", "1", "links that the cell has lost", COLUMN_I32, 1, t->broken);
+            sheet_add(f, "rotation", t->turn_width == 4 ? "1" : "rad",
+                t->turn_width == 4 ? "quaternion w, x, y, z" : "small rotation about x, y, z, and 0", COLUMN_F64, 4, t->turn);
+        else if (!strcmp(name, "id")) sheet_add(f, "id", "1", "global id", COLUMN_I64, 1, t->gid);
+        else if (!strcmp(name, "stress")) sheet_add(f, "stress", "Pa", "stress in the world's axes, rows of the tensor", COLUMN_F64, 9, t->stress);
+        else if (!strcmp(name, "von_mises")) sheet_add(f, "von_mises", "Pa", "von Mises' equivalent stress", COLUMN_F64, 1, t->von_mises);
+        else if (!strcmp(name, "broken")) sheet_add(f, "broken", "1", "links that the cell has lost", COLUMN_I32, 1, t->broken);
         else {
-            f->own[f->n_own] = integers(s, t, name);
-            add(f, name, "1", "index in the scene; owner: rank", COLUMN_I32, 1, f->own[f->n_own++]);
+            sheet_add(f, name, "1", "index in the scene; owner: rank", COLUMN_I32, 1, sheet_keep(f, integers(s, t, name)));
         }
     }
 }
@@ -144,36 +133,42 @@ void lattice_method_frame(struct sim *s, int64_t index)
     struct lattice_state *t = lattice_state_create(s);
     size_t n = (size_t)t->n;
     double(*x)[3] = fail_alloc(CORNERS * n * sizeof *x), (*u)[3] = fail_alloc(CORNERS * n * sizeof *u);
-    struct fields shown = {.n = 0}, state = {.n = 0};
+    struct sheet shown = {.n = 0}, state = {.n = 0};
     corners(s, t, x, u);
     const struct column point[] = {{"position", "m", "corners of the cells at the start", COLUMN_F64, 3, x},
         {"displacement", "m", "displacement of the corners", COLUMN_F64, 3, u}};
     shown_fields(s, t, &shown);
-    add(&state, "id", "1", "global id", COLUMN_I64, 1, t->gid);
-    add(&state, "displacement", "m", "displacement of the centre", COLUMN_F64, 3, t->u);
-    add(&state, "rotation", t->turn_width == 4 ? "1" : "rad", "quaternion w, x, y, z, or a small rotation and 0", COLUMN_F64, 4, t->turn);
-    add(&state, "velocity", "m/s", "velocity of the centre", COLUMN_F64, 3, t->v);
-    add(&state, "angular_velocity", "rad/s", "angular velocity", COLUMN_F64, 3, t->w);
+    sheet_add(&state, "id", "1", "global id", COLUMN_I64, 1, t->gid);
+    sheet_add(&state, "displacement", "m", "displacement of the centre", COLUMN_F64, 3, t->u);
+    sheet_add(&state, "rotation", t->turn_width == 4 ? "1" : "rad", "quaternion w, x, y, z, or a small rotation and 0", COLUMN_F64, 4, t->turn);
+    sheet_add(&state, "velocity", "m/s", "velocity of the centre", COLUMN_F64, 3, t->v);
+    sheet_add(&state, "angular_velocity", "rad/s", "angular velocity", COLUMN_F64, 3, t->w);
     if (t->links) {
-        add(&state, "links", "1", "links left, a bit for each of -x, +x, -y, +y, -z, +z", COLUMN_I32, 1, t->links);
-        add(&state, "fate", "1", "how links at upper faces broke, three bits for each of x, y, z: tension 1, shear 2, bending 3, twist 4", COLUMN_I32,
-            1, t->fate);
+        sheet_add(&state, "links", "1", "links left, a bit for each of -x, +x, -y, +y, -z, +z", COLUMN_I32, 1, t->links);
+        sheet_add(&state, "fate", "1", "how links at upper faces broke, three bits for each of x, y, z: tension 1, shear 2, bending 3, twist 4",
+            COLUMN_I32, 1, t->fate);
     }
-    struct table table = {"cells", t->n, state.column, state.n};
-    struct frame_scalar scalar = {"dt", COLUMN_F64, s->dt, 0};
+    lattice_restore_columns(s, &state);
+    struct table table[2] = {{"cells", t->n, state.column, state.n}};
+    double *total = sheet_keep(&state, lattice_restore_totals(s));
+    const struct column column = {"number", "1", "totals and what the loop has noted, see lattice_restore.c", COLUMN_F64, 1, total};
+    table[1] = (struct table){"totals", s->comm->rank == 0 ? LATTICE_RESTORE_TOTALS : 0, &column, 1};
+    struct frame_scalar scalar[RESUME_SCALARS];
+    resume_note(s, scalar);
     struct frame frame = {.step = s->step,
         .time = (double)s->step * s->dt,
         .index = index,
         .points = {"points", CORNERS * t->n, point, 2},
         .hexahedra = true,
         .cells = {"cells", t->n, shown.column, shown.n},
-        .state = &table,
-        .n_state = 1,
+        .state = table,
+        .n_state = 2,
         .resolved = s->scene->resolved,
-        .scalar = &scalar,
-        .n_scalar = 1};
+        .scalar = scalar,
+        .n_scalar = RESUME_SCALARS};
     snapshot_write(s->comm, s->options->dir, &frame);
-    for (int k = 0; k < shown.n_own; k++) free(shown.own[k]);
+    sheet_free(&shown);
+    sheet_free(&state);
     free(x);
     free(u);
     lattice_state_free(t);

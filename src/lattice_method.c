@@ -7,8 +7,10 @@
 
 #include "fail.h"
 #include "lattice_frequency.h"
+#include "lattice_restore.h"
 #include "output.h"
 #include "report.h"
+#include "resume.h"
 #include "scene_report.h"
 
 static bool is_listed(char *const *list, int n, const char *word)
@@ -54,10 +56,12 @@ static void plan(struct sim *s)
     s->features.real_is_float = s->scene->precision == PRECISION_SINGLE || s->scene->precision == PRECISION_MIXED;
     s->features.position_is_float = s->scene->precision == PRECISION_SINGLE;
     s->dt_limit = lattice_frequency_step(s->scene, s->solid->cells);
-    s->dt = t->step > 0 ? t->step : t->safety * s->dt_limit;
+    s->dt = s->from ? s->from->dt : t->step > 0 ? t->step : t->safety * s->dt_limit;
     if (!(s->dt > 0) || isinf(s->dt))
         fail_stop_together(EXIT_SCENE, "%s: time.step: auto finds no limit in this scene, for no two cells are linked; give a value", s->scene->path);
     s->solid->input = lattice_input_create(s->scene, s->solid->cells, s->dt);
+    s->inputs = lattice_restore_inputs(s);
+    if (s->from) s->solid->input->options.energy = lattice_restore_energy(s, s->solid->input->options.energy);
 }
 
 static void setup(struct sim *s)
@@ -67,13 +71,15 @@ static void setup(struct sim *s)
     if (r->input->options.energy) energy_require_double(s);
     r->lattice = lattice_create(s->dev, s->comm, r->cells, &r->input->options);
     r->lattice->timers = &s->timers;
+    if (s->from) lattice_restore_cells(s);
     r->account = lattice_energy_create(r->lattice, r->cells);
     if (wants_stress(s->scene)) r->stress = lattice_stress_create(r->lattice, s->scene->lattice.stress == STRESS_EXTRAPOLATED);
     if (s->scene->lattice.relax) {
         r->relax = lattice_relax_create(r->lattice, r->cells, s->scene->time.end);
         s->rest.next = s->scene->lattice.look_every - 1;
     }
-    lattice_energy_now(r->account, &r->energy_start);
+    if (s->from) lattice_restore_run(s);
+    else lattice_energy_now(r->account, &r->energy_start);
 }
 
 static void warn(struct sim *s)

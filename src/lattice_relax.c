@@ -189,6 +189,21 @@ bool lattice_relax_second(struct lattice_relax *r, double tolerance)
     return r->rest.left <= tolerance * r->rest.scale && loads_are_last(r);
 }
 
+void lattice_relax_note(const struct lattice_relax *r, double note[LATTICE_RELAX_NOTES])
+{
+    const double all[LATTICE_RELAX_NOTES] = {r->rest.alpha, r->rest.left, r->rest.scale, r->motion, r->power};
+    memcpy(note, all, sizeof all);
+}
+
+void lattice_relax_recall(struct lattice_relax *r, const double note[LATTICE_RELAX_NOTES])
+{
+    set_damping(r, note[0]);
+    r->rest.left = note[1];
+    r->rest.scale = note[2];
+    r->motion = note[3];
+    r->power = note[4];
+}
+
 const struct lattice_rest *lattice_relax_rest(const struct lattice_relax *r)
 {
     return &r->rest;

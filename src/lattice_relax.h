@@ -28,6 +28,10 @@ void lattice_relax_free(struct lattice_relax *r); /* NULL is fine */
 void lattice_relax_first(struct lattice_relax *r);
 /* Returns whether left <= tolerance scale. */
 bool lattice_relax_second(struct lattice_relax *r, double tolerance);
+/* What the next look and the next step depend on, and the other way. */
+enum { LATTICE_RELAX_NOTES = 5 };
+void lattice_relax_note(const struct lattice_relax *r, double note[LATTICE_RELAX_NOTES]);
+void lattice_relax_recall(struct lattice_relax *r, const double note[LATTICE_RELAX_NOTES]);
 const struct lattice_rest *lattice_relax_rest(const struct lattice_relax *r);
 
 #endif

@@ -22,7 +22,7 @@ double *lattice_read_plane(const struct lattice *l, const struct buffer *buffer,
     return value;
 }
 
-static void write_plane(struct lattice *l, struct buffer *buffer, bool is_float, int64_t number, const double *value, int width)
+void lattice_write_plane(struct lattice *l, struct buffer *buffer, bool is_float, int64_t number, const double *value, int width)
 {
     int64_t n = l->layout->plane;
     size_t bytes = is_float ? sizeof(float) : sizeof(double);
@@ -67,17 +67,43 @@ void lattice_read(const struct lattice *l, const struct lattice_motion *m)
         }
 }
 
-/* The state begins anew from here: in the first set of planes. */
-void lattice_write(struct lattice *l, const struct lattice_motion *m)
+/* Into one set of planes. */
+static void write_set(struct lattice *l, const struct lattice_motion *m, int set)
 {
     struct part part[4];
     int n = parts(l, m, part);
+    for (int p = 0; p < n; p++)
+        for (int a = 0; a < part[p].width && part[p].value; a++) {
+            int64_t number = set * (part[p].is_x ? LATTICE_X(l->features.turn) : LATTICE_V) + part[p].first + a;
+            lattice_write_plane(l, part[p].is_x ? &l->x : &l->v, part[p].is_x ? l->features.position_is_float : l->features.real_is_float, number,
+                part[p].value + a, part[p].width);
+        }
+}
+
+/* The state begins anew from here: in the first set of planes. */
+void lattice_write(struct lattice *l, const struct lattice_motion *m)
+{
     l->x_set = l->v_set = l->x_observed = l->v_observed = 0;
     l->started = false;
-    for (int p = 0; p < n; p++)
-        for (int a = 0; a < part[p].width && part[p].value; a++)
-            write_plane(l, part[p].is_x ? &l->x : &l->v, part[p].is_x ? l->features.position_is_float : l->features.real_is_float, part[p].first + a,
-                part[p].value + a, part[p].width);
+    write_set(l, m, 0);
+}
+
+void lattice_write_observed(struct lattice *l, int64_t step, const struct lattice_motion *m, const struct lattice_motion *before)
+{
+    lattice_write(l, m);
+    l->step = step;
+    if (!l->scheme->ends_with_kick || step == 0) return;
+    write_set(l, before, 0);
+    write_set(l, &(struct lattice_motion){.v = m->v, .w = m->w}, 1);
+    l->v_observed = 1;
+    l->started = l->counted = true;
+}
+
+void lattice_read_before(const struct lattice *l, const struct lattice_motion *m)
+{
+    struct lattice view = *l;
+    view.v_observed = l->v_set;
+    lattice_read(&view, m);
 }
 
 int64_t lattice_digest(const struct lattice *l, uint64_t *digest)

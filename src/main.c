@@ -5,22 +5,40 @@
 #include "check.h"
 #include "fail.h"
 #include "options.h"
+#include "resume.h"
 #include "scene_report.h"
 #include "signals.h"
 #include "version.h"
 
-/* `democles run`: collective. */
-static int run(struct comm *comm, struct options *options, struct scene *scene)
+/* `democles run` and `democles resume`: collective. */
+static int run(struct comm *comm, struct options *options)
 {
-    char *dir = options->run.dir ? fail_strdup(options->run.dir) : fail_format("out/%s", scene->name);
-    options->run.dir = dir;
-    signals_install();
     struct log *log = log_create(comm, options->run.quiet);
+    bool goes_on = options->command == OPTIONS_RESUME;
+    struct resume *from = goes_on ? resume_open(comm, log, options->operand) : NULL;
+    struct scene *scene =
+        goes_on ? resume_scene(comm, from, options->set, options->n_set) : scene_report_read(comm, options->operand, options->set, options->n_set);
+    const char *given = goes_on ? options->operand : options->run.dir;
+    char *dir = given ? fail_strdup(given) : fail_format("out/%s", scene->name);
+    options->run.dir = dir;
+    options->run.from = from;
+    signals_install();
     struct sim *sim = sim_create(scene, comm, log, &options->run);
     int code = sim_run(sim);
     sim_free(sim);
     log_free(log);
+    resume_free(from);
+    scene_free(scene);
     free(dir);
+    return code;
+}
+
+/* `democles check`: collective. */
+static int check(struct comm *comm, const struct options *options)
+{
+    struct scene *scene = scene_report_read(comm, options->operand, options->set, options->n_set);
+    int code = check_scene(comm, scene, options->resolved);
+    scene_free(scene);
     return code;
 }
 
@@ -59,13 +77,9 @@ int main(int argc, char **argv)
     if (options.error) fail_stop_together(EXIT_USAGE, "%s", options.error);
 
     int code;
-    if (options.help || options.version || (options.command != OPTIONS_RUN && options.command != OPTIONS_CHECK)) {
-        code = print(comm, &options);
-    } else {
-        struct scene *scene = scene_report_read(comm, options.operand, options.set, options.n_set);
-        code = options.command == OPTIONS_RUN ? run(comm, &options, scene) : check_scene(comm, scene, options.resolved);
-        scene_free(scene);
-    }
+    bool runs = options.command == OPTIONS_RUN || options.command == OPTIONS_RESUME;
+    if (options.help || options.version || (!runs && options.command != OPTIONS_CHECK)) code = print(comm, &options);
+    else code = runs ? run(comm, &options) : check(comm, &options);
 
     int32_t is_lost = fflush(stdout) || ferror(stdout);
     comm_or_i32(comm, &is_lost, 1);

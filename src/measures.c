@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "fail.h"
+#include "resume.h"
 
 struct measures {
     int n;
@@ -18,9 +19,20 @@ struct measures *measures_create(struct sim *s)
     for (int i = 0; i < m->n; i++) {
         const struct series_column *column;
         int n = s->ops->measure_columns(s->scene->measure[i].kind, &column);
-        m->series[i] = series_create(s->comm, s->options->dir, s->scene->measure[i].name, column, n);
+        const char *name = s->scene->measure[i].name;
+        m->series[i] = s->from ? series_resume(s->comm, s->options->dir, name, column, n, (double)s->from->step * s->dt)
+                               : series_create(s->comm, s->options->dir, name, column, n);
     }
     return m;
+}
+
+void measures_check(struct sim *s)
+{
+    for (int i = 0; i < s->scene->n_measure; i++) {
+        const struct series_column *column;
+        int n = s->ops->measure_columns(s->scene->measure[i].kind, &column);
+        series_check(s->comm, s->options->dir, s->scene->measure[i].name, column, n);
+    }
 }
 
 void measures_free(struct measures *m)

@@ -7,6 +7,8 @@
 
 struct measures;
 
+/* Whether the files that are there are those of the measures; of a run that goes on, before it changes anything. Ends the run where they are not. */
+void measures_check(struct sim *s);
 struct measures *measures_create(struct sim *s);
 void measures_free(struct measures *m);
 /* Steps between lines of measure i. */

@@ -16,27 +16,29 @@ static const struct command {
     bool needed; /* the operand */
 } COMMAND[] = {
     [OPTIONS_RUN] = {"run", "SCENE", "run a scene; `mpirun -n N democles run SCENE` for N ranks", true},
+    [OPTIONS_RESUME] = {"resume", "DIR", "go on from the newest whole frame in DIR, on any number of ranks, with the same bits", true},
     [OPTIONS_CHECK] = {"check", "SCENE", "read and validate a scene, and print what would run", true},
     [OPTIONS_DEVICES] = {"devices", NULL, "OpenCL devices, and which one each rank would take", false},
     [OPTIONS_EXPLAIN] = {"explain", "KEY", "the scene language: every key, or those of KEY (contacts.normal)", false},
 };
 
 enum { DIRECTORY, SET, FORCE, DEVICE, PRECISION, STEPS, MAX_TIME, QUIET, PROFILE, RESOLVED, RANKS, N_OPTION };
-enum { RUN = 1 << OPTIONS_RUN, CHECK = 1 << OPTIONS_CHECK, DEVICES = 1 << OPTIONS_DEVICES };
+enum { RUN = 1 << OPTIONS_RUN, RESUME = 1 << OPTIONS_RESUME, CHECK = 1 << OPTIONS_CHECK, DEVICES = 1 << OPTIONS_DEVICES };
 
 static const struct option {
     const char *name, *value, *text; /* value: NULL for a switch */
     int commands;                    /* that know it, bits */
 } OPTION[N_OPTION] = {
     [DIRECTORY] = {"-o", "DIR", "folder of the results [out/<name of the scene>]", RUN},
-    [SET] = {"--set", "KEY=VALUE", "change a key of the scene, as time.end=1s; may be given again", RUN | CHECK},
+    [SET] = {"--set", "KEY=VALUE", "change a key of the scene, as time.end=1s; may be given again", RUN | RESUME | CHECK},
     [FORCE] = {"--force", NULL, "replace earlier results in DIR", RUN},
-    [DEVICE] = {"--device", "PLATFORM:DEVICE", "indices or parts of names, as `democles devices` lists them; or a part of one name [the best]", RUN},
+    [DEVICE] = {"--device", "PLATFORM:DEVICE", "indices or parts of names, as `democles devices` lists them; or a part of one name [the best]",
+        RUN | RESUME},
     [PRECISION] = {"--precision", "P", "double, mixed or single [the scene's]", RUN | CHECK},
-    [STEPS] = {"--steps", "N", "end after step N, counted from the scene's start", RUN},
-    [MAX_TIME] = {"--max-time", "1h30m", "stop after this time on the clock, with exit code 75", RUN},
-    [QUIET] = {"--quiet", NULL, "nothing to the screen but errors and warnings", RUN},
-    [PROFILE] = {"--profile", NULL, "device time of each kernel into run.json, at a small price", RUN},
+    [STEPS] = {"--steps", "N", "end after step N, counted from the scene's start", RUN | RESUME},
+    [MAX_TIME] = {"--max-time", "1h30m", "stop after this time on the clock, with exit code 75", RUN | RESUME},
+    [QUIET] = {"--quiet", NULL, "nothing to the screen but errors and warnings", RUN | RESUME},
+    [PROFILE] = {"--profile", NULL, "device time of each kernel into run.json, at a small price", RUN | RESUME},
     [RESOLVED] = {"--resolved", NULL, "print only the scene, with all defaults", CHECK},
     [RANKS] = {"--ranks", "N", "say what ranks 0 to N - 1 of a node take [those running]", DEVICES},
 };
@@ -60,7 +62,6 @@ static void parse_command(struct options *o, const char *word)
     if (o->command != OPTIONS_NONE) return;
     if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) o->help = true;
     else if (strcmp(word, "--version") == 0) o->version = true;
-    else if (strcmp(word, "resume") == 0) o->error = fail_strdup("this version cannot resume yet");
     else {
         char *more = advice(word, name, OPTIONS_NONE, OPTIONS_NONE);
         o->error = fail_format("%s '%s'%s", word[0] == '-' ? "a command has to come first, not" : "there is no command", word, more);

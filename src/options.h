@@ -6,12 +6,12 @@
 
 #include "sim.h"
 
-enum options_command { OPTIONS_RUN, OPTIONS_CHECK, OPTIONS_DEVICES, OPTIONS_EXPLAIN, OPTIONS_NONE };
+enum options_command { OPTIONS_RUN, OPTIONS_RESUME, OPTIONS_CHECK, OPTIONS_DEVICES, OPTIONS_EXPLAIN, OPTIONS_NONE };
 
 struct options {
     enum options_command command; /* OPTIONS_NONE: only --help or --version */
     bool help, version;           /* print this, and nothing else */
-    const char *operand;          /* SCENE; KEY of explain, NULL if not given */
+    const char *operand;          /* SCENE, DIR; KEY of explain, NULL if not given */
     const char **set;             /* [n_set] KEY=VALUE for scene_read, last --precision */
     int n_set;
     struct sim_options run; /* dir: NULL if not given; precision: always PRECISION_DEFAULT, since --precision is one of `set` */

@@ -9,11 +9,12 @@
 #include "measures.h"
 #include "output_dir.h"
 #include "record.h"
+#include "resume.h"
 #include "signals.h"
 
 struct outputs {
     struct measures *measures;
-    int64_t frame_every; /* steps; 0: first and last only */
+    int64_t frame_every, checkpoint_every; /* steps; 0: first and last only */
     int64_t n_frame;
     int64_t frame_step; /* of the last frame; -1: none */
     double looked_at;   /* clock of the last look for `stop` */
@@ -33,13 +34,15 @@ struct outputs *output_create(struct sim *s)
     const char **name = fail_alloc((size_t)s->scene->n_measure * sizeof *name);
     for (int i = 0; i < s->scene->n_measure; i++) name[i] = s->scene->measure[i].name;
     struct output_request request = {s->options->dir, s->options->force, s->scene->path, s->scene->resolved, name, s->scene->n_measure};
-    output_dir_create(s->comm, &request);
-    log_attach(s->log, s->options->dir, false);
+    if (s->from) measures_check(s);
+    if (s->from) output_dir_resume(s->comm, &request, s->from->index);
+    else output_dir_create(s->comm, &request);
+    log_attach(s->log, s->options->dir, s->from != NULL);
     out->measures = measures_create(s);
-    double every = s->scene->output.every;
-    if (s->scene->output.checkpoint_every > 0) every = every > 0 ? fmin(every, s->scene->output.checkpoint_every) : s->scene->output.checkpoint_every;
-    out->frame_every = steps_of(s, every);
-    out->frame_step = -1;
+    out->frame_every = steps_of(s, s->scene->output.every);
+    out->checkpoint_every = steps_of(s, s->scene->output.checkpoint_every);
+    out->frame_step = s->from ? s->from->step : -1;
+    out->n_frame = s->from ? s->from->index + 1 : 0;
     free(name);
     return out;
 }
@@ -53,7 +56,10 @@ void output_free(struct outputs *out)
 
 static bool frame_due(const struct sim *s, int64_t step)
 {
-    return step == 0 || (s->output->frame_every > 0 && step % s->output->frame_every == 0);
+    const int64_t every[] = {s->output->frame_every, s->output->checkpoint_every};
+    for (int k = 0; k < 2; k++)
+        if (every[k] > 0 && step % every[k] == 0) return true;
+    return step == 0;
 }
 
 bool output_due(const struct sim *s, int64_t step)

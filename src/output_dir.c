@@ -4,11 +4,13 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <fnmatch.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <yaml.h>
@@ -47,6 +49,19 @@ static bool make_folders(const char *dir, struct outcome *outcome)
     }
     if (ok && access(dir, W_OK | X_OK)) ok = fail_with(outcome, EXIT_IO, "write into", dir);
     return ok;
+}
+
+/* Held until the process ends, however it ends. A file system that knows no locks does without. */
+static bool lock(const char *dir, struct outcome *outcome)
+{
+    int fd = open(dir, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (fd < 0) return fail_with(outcome, EXIT_IO, "open the folder", dir);
+    if (flock(fd, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return true;
+    close(fd);
+    outcome->code = EXIT_USAGE;
+    snprintf(outcome->text, sizeof outcome->text, "another run is still writing into '%s'%s", dir,
+        output_dir_stop_asked(dir) ? "; it has been asked to stop" : "");
+    return false;
 }
 
 static bool is_result(const char *name)
@@ -193,7 +208,7 @@ static void find_others(const struct output_request *request, const char *scene,
 static void create(const struct output_request *request, const char *scene, size_t n_scene, struct outcome *outcome)
 {
     const char *dir = request->dir;
-    if (!make_folders(dir, outcome)) return;
+    if (!make_folders(dir, outcome) || !lock(dir, outcome)) return;
     bool is_ours_already = holds_results(dir) || exists(dir, "resolved.yaml"); /* the latter: a run that was killed before its first frame */
     char why[300];
     find_others(request, scene, n_scene, is_ours_already, why, sizeof why);
@@ -222,6 +237,40 @@ void output_dir_create(const struct comm *comm, const struct output_request *req
         else outcome.code = EXIT_IO;
         free(scene);
     }
+    comm_bcast(comm, &outcome, sizeof outcome, 0);
+    if (outcome.code) fail_stop_together(outcome.code, "%s", outcome.text);
+}
+
+/* Whether a run that goes on from frame `index` leaves this file behind. */
+static bool is_over(const char *name, int64_t index)
+{
+    long long number;
+    if (!strcmp(name, "run.json") || !strcmp(name, "stop")) return true;
+    if (fnmatch("frame_[0-9]*.hdf", name, 0) && fnmatch("frame_[0-9]*.hdf.tmp", name, 0)) return false;
+    return sscanf(name, "frame_%lld", &number) == 1 && number > index;
+}
+
+static void take_up(const struct output_request *request, int64_t index, struct outcome *outcome)
+{
+    const char *dir = request->dir;
+    if (access(dir, W_OK | X_OK)) {
+        fail_with(outcome, EXIT_IO, "write into", dir);
+        return;
+    }
+    if (!lock(dir, outcome)) return;
+    DIR *folder = opendir(dir);
+    bool ok = folder || fail_with(outcome, EXIT_IO, "read the folder", dir);
+    for (struct dirent *entry; folder && (entry = readdir(folder));)
+        if (is_over(entry->d_name, index)) ok = remove_file(dir, entry->d_name, outcome) && ok;
+    if (folder) closedir(folder);
+    if (ok) put_file(dir, "resolved.yaml", request->resolved, strlen(request->resolved), outcome);
+}
+
+void output_dir_resume(const struct comm *comm, const struct output_request *request, int64_t index)
+{
+    signal(SIGXFSZ, SIG_IGN);
+    struct outcome outcome = {0, ""};
+    if (comm->rank == 0) take_up(request, index, &outcome);
     comm_bcast(comm, &outcome, sizeof outcome, 0);
     if (outcome.code) fail_stop_together(outcome.code, "%s", outcome.text);
 }

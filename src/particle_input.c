@@ -3,8 +3,12 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
+#include "digest.h"
 #include "fail.h"
+#include "h5_check.h"
+#include "resume.h"
 #include "scene_report.h"
 
 void particle_read(struct sim *s)
@@ -15,6 +19,22 @@ void particle_read(struct sim *s)
     if (s->walls && s->first) generate_check_walls(s->scene, s->walls, s->first, &errors);
     scene_report_errors(s->comm, &errors);
     if (s->first->n > INT32_MAX / 2) fail_stop_together(EXIT_SCENE, "more than %d elements", INT32_MAX / 2);
+}
+
+static uint64_t add(uint64_t sum, enum column_type type, const void *data, int64_t n)
+{
+    return digest_mix((sum ^ h5_check_sum(type, data, n, 0)) + DIGEST_G);
+}
+
+static void sum_inputs(struct sim *s)
+{
+    const struct elements_host *e = s->first;
+    uint64_t sum = (uint64_t)e->n;
+    sum = add(sum, COLUMN_F64, e->x, 3 * e->n);
+    sum = add(sum, COLUMN_F64, e->radius, e->n);
+    sum = add(sum, COLUMN_I32, e->material, e->n);
+    sum = add(sum, COLUMN_F64, s->walls->primitive, 12 * (int64_t)s->walls->n_primitive);
+    memcpy(&s->inputs, &sum, sizeof sum);
 }
 
 /* Box of the domain: as given, else around elements and walls with room beyond, so that what falls out of sight is out of it. */
@@ -46,15 +66,27 @@ static void set_domain(struct sim *s)
 static void set_step(struct sim *s)
 {
     const struct scene_time *t = &s->scene->time;
-    double limit = particle_limit_dense(s);
-    s->dt = t->step > 0 ? t->step : t->safety * limit;
+    s->dt = s->from ? s->from->dt : t->step > 0 ? t->step : t->safety * particle_limit_dense(s);
     if (!(s->dt > 0) || isinf(s->dt))
         fail_stop_together(EXIT_SCENE, "%s: time.step: auto finds no limit in this scene; give a value", s->scene->path);
+}
+
+/* What the run has kept account of it goes on to; what it has not cannot begin now. */
+static void keep_features(struct sim *s)
+{
+    bool orientation = h5_has(s->from->reader, "elements", "orientation"), energy = h5_has(s->from->reader, "pairs", "ledger");
+    const char *missing = s->features.energy && !energy ? "a measure of energy" : s->features.orientation && !orientation ? "orientation" : NULL;
+    if (missing)
+        fail_stop_together(EXIT_SCENE, "%s cannot begin in a run that goes on: '%s' has nothing of what it was until then", missing, s->from->path);
+    s->features.orientation = orientation;
+    s->features.energy = energy;
 }
 
 void particle_plan(struct sim *s)
 {
     s->features = features_of(s->scene, s->walls, s->first);
+    sum_inputs(s);
+    if (s->from) keep_features(s);
     set_domain(s);
     set_step(s);
 }

@@ -98,7 +98,8 @@ static void check_inside(struct sim *s, const struct cells_bounds *now)
         (long long)first, x[0], x[1], x[2]);
 }
 
-void particle_build(struct sim *s)
+/* Room to move until the next build, from the velocities of now. */
+static void make_room(struct sim *s)
 {
     struct device *dev = s->dev;
     struct particles *p = s->particles;
@@ -115,6 +116,18 @@ void particle_build(struct sim *s)
     launch_bind_buffer(room, "reference", &p->reference);
     launch_bind_buffer(room, "reach", &p->reach);
     launch_run(room, dev->compute, p->n_owned, 0, NULL, NULL);
+}
+
+void particle_build(struct sim *s)
+{
+    make_room(s);
+    particle_lists(s);
+}
+
+void particle_lists(struct sim *s)
+{
+    struct device *dev = s->dev;
+    struct particles *p = s->particles;
     s->bounds = cells_bounds(dev, s->cells, p, p->n_owned);
     for (int a = 0; a < 3; a++) {
         s->box[a] = s->bounds.low[a];

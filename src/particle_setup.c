@@ -123,6 +123,15 @@ void particle_bind(struct sim *s)
     launch_set_int(s->wall_force, "capacity", (int)w->now.capacity);
 }
 
+void particle_cut(struct sim *s, const double *x, int64_t n)
+{
+    int64_t *weight = fail_alloc((size_t)n * sizeof *weight);
+    for (int64_t i = 0; i < n; i++) weight[i] = 1;
+    s->rcb = rcb_create(s->comm, x, weight, n);
+    owners_set_tree(s->dev, s->owners, s->rcb);
+    free(weight);
+}
+
 /* Every rank has all elements and takes its own. */
 static void distribute(struct sim *s)
 {
@@ -130,15 +139,11 @@ static void distribute(struct sim *s)
     int64_t share = (e->n + s->comm->n_rank - 1) / s->comm->n_rank, begin = share * s->comm->rank;
     int64_t n = e->n - begin < share ? e->n - begin : share;
     if (n < 0) n = 0;
-    int64_t *weight = fail_alloc((size_t)n * sizeof *weight);
-    for (int64_t i = 0; i < n; i++) weight[i] = 1;
-    s->rcb = rcb_create(s->comm, n > 0 ? e->x + 3 * begin : e->x, weight, n);
-    owners_set_tree(s->dev, s->owners, s->rcb);
+    particle_cut(s, n > 0 ? e->x + 3 * begin : e->x, n);
     unsigned char *take = fail_alloc((size_t)e->n);
     for (int64_t i = 0; i < e->n; i++) take[i] = rcb_owner(s->rcb, e->x + 3 * i) == s->comm->rank;
     particles_upload(s->dev, s->particles, &s->features, e, s->scene, take);
     free(take);
-    free(weight);
 }
 
 static double smallest_radius(const struct elements_host *e)
@@ -160,6 +165,21 @@ static void first_forces(struct sim *s)
     launch_set_real(s->gather, "half_dt", 0.5 * s->dt);
 }
 
+/* Elements as generated, forces at step 0. */
+static void start(struct sim *s)
+{
+    s->skin = SKIN_START * smallest_radius(s->first);
+    distribute(s);
+    if (s->wall_contacts) wall_contacts_set_step(s->dev, s->wall_contacts, 0);
+    particle_build(s);
+    particle_bind(s);
+    s->limit = limit_create(s);
+    particle_regroup(s); /* once for nothing: its kernels are compiled before the clock runs, and what starts outside leaves at once */
+    s->n_rebuild = 0;
+    first_forces(s);
+    energy_now(s, &s->energy_start);
+}
+
 void particle_setup(struct sim *s)
 {
     s->n_first = s->first->n;
@@ -176,17 +196,9 @@ void particle_setup(struct sim *s)
     if (s->features.walls)
         s->wall_contacts = wall_contacts_create(s->dev, s->comm, &s->features, s->scene, s->walls, s->dt, s->program_lists, s->program_wall);
     s->energy = energy_create(s);
-    s->skin = SKIN_START * smallest_radius(s->first);
     s->horizon = HORIZON_STEPS * s->dt;
-    distribute(s);
-    if (s->wall_contacts) wall_contacts_set_step(s->dev, s->wall_contacts, 0);
-    particle_build(s);
-    particle_bind(s);
-    s->limit = limit_create(s);
-    particle_regroup(s); /* once for nothing: its kernels are compiled before the clock runs, and what starts outside leaves at once */
-    s->n_rebuild = 0;
-    first_forces(s);
-    energy_now(s, &s->energy_start);
+    if (s->from) particle_resume(s);
+    else start(s);
 }
 
 void particle_free(struct sim *s)

@@ -114,10 +114,10 @@ static double mass_of(const struct scene *scene, int material, double radius)
 }
 
 /* One element's record, as kernels/element.h reads it. */
-static void write_record(char *record, const struct features *f, const struct elements_host *e, int64_t i, double mass)
+static void write_record(char *record, const struct features *f, const struct particles_host *h, int64_t i)
 {
-    double head[4] = {e->x[3 * i], e->x[3 * i + 1], e->x[3 * i + 2], e->radius[i]};
-    double tail[8] = {e->v[3 * i], e->v[3 * i + 1], e->v[3 * i + 2], 1 / mass, e->w[3 * i], e->w[3 * i + 1], e->w[3 * i + 2], e->material[i]};
+    const double *x = h->x + 3 * i, *v = h->v + 3 * i, *w = h->w + 3 * i;
+    double head[4] = {x[0], x[1], x[2], h->radius[i]}, tail[8] = {v[0], v[1], v[2], 1 / h->mass[i], w[0], w[1], w[2], h->material[i]};
     for (int k = 0; k < 4; k++) {
         if (f->position_is_float) ((float *)record)[k] = (float)head[k];
         else ((double *)record)[k] = head[k];
@@ -129,32 +129,67 @@ static void write_record(char *record, const struct features *f, const struct el
     }
 }
 
+void particles_write_state(struct device *dev, struct particles *p, const struct features *f, const struct particles_host *h)
+{
+    size_t bytes = state_bytes(f);
+    char *state = fail_alloc((size_t)h->n * bytes);
+    for (int64_t i = 0; i < h->n; i++) write_record(state + (size_t)i * bytes, f, h, i);
+    buffer_write(dev, &p->field[FIELD_STATE].now, 0, (size_t)h->n * bytes, state);
+    free(state);
+}
+
+void particles_place(struct device *dev, struct particles *p, const struct features *f, const struct particles_host *h)
+{
+    p->n_owned = h->n;
+    p->n_ghost = 0;
+    particles_reserve(dev, p, f, h->n, 0);
+    particles_write_state(dev, p, f, h);
+    buffer_write(dev, &p->field[FIELD_GID].now, 0, (size_t)h->n * sizeof *h->gid, h->gid);
+    if (f->orientation) particles_write(dev, &p->field[FIELD_ORIENTATION].now, f->real_is_float, 0, 4 * (size_t)h->n, h->q);
+}
+
+struct particles_host *particles_host_create(int64_t n_row)
+{
+    struct particles_host *h = fail_alloc(sizeof *h);
+    size_t n = (size_t)n_row;
+    h->n = n_row;
+    h->gid = fail_alloc(n * sizeof *h->gid);
+    h->x = fail_alloc(3 * n * sizeof *h->x);
+    h->v = fail_alloc(3 * n * sizeof *h->v);
+    h->w = fail_alloc(3 * n * sizeof *h->w);
+    h->q = fail_alloc(4 * n * sizeof *h->q);
+    h->radius = fail_alloc(n * sizeof *h->radius);
+    h->mass = fail_alloc(n * sizeof *h->mass);
+    h->material = fail_alloc(n * sizeof *h->material);
+    for (size_t i = 0; i < n; i++) h->q[4 * i] = 1;
+    return h;
+}
+
+void particles_host_kind(struct particles_host *h, int64_t i, const struct scene *scene, const struct elements_host *first)
+{
+    int64_t gid = h->gid[i];
+    h->radius[i] = first->radius[gid];
+    h->material[i] = first->material[gid];
+    h->mass[i] = mass_of(scene, h->material[i], first->radius[gid]);
+}
+
 void particles_upload(struct device *dev, struct particles *p, const struct features *features, const struct elements_host *elements,
     const struct scene *scene, const unsigned char *take)
 {
-    int64_t n = 0;
-    size_t bytes = state_bytes(features), real = particles_real(features);
+    int64_t n = 0, k = 0;
     for (int64_t i = 0; i < elements->n; i++) n += take[i];
-    char *state = fail_alloc((size_t)n * bytes);
-    int64_t *gid = fail_alloc((size_t)n * sizeof *gid);
-    double *q = fail_alloc((size_t)n * 4 * sizeof *q);
-    int64_t k = 0;
+    struct particles_host *h = particles_host_create(n);
     for (int64_t i = 0; i < elements->n; i++) {
         if (!take[i]) continue;
-        write_record(state + (size_t)k * bytes, features, elements, i, mass_of(scene, elements->material[i], elements->radius[i]));
-        gid[k] = i;
-        q[4 * k++] = 1;
+        h->gid[k] = i;
+        memcpy(h->x + 3 * k, elements->x + 3 * i, 3 * sizeof *h->x);
+        memcpy(h->v + 3 * k, elements->v + 3 * i, 3 * sizeof *h->v);
+        memcpy(h->w + 3 * k, elements->w + 3 * i, 3 * sizeof *h->w);
+        particles_host_kind(h, k++, scene, elements);
     }
-    p->n_owned = n;
-    p->n_ghost = 0;
     p->n_global = elements->n;
-    particles_reserve(dev, p, features, n, 0);
-    buffer_write(dev, &p->field[FIELD_STATE].now, 0, (size_t)n * bytes, state);
-    buffer_write(dev, &p->field[FIELD_GID].now, 0, (size_t)n * sizeof *gid, gid);
-    if (features->orientation) particles_write(dev, &p->field[FIELD_ORIENTATION].now, real == sizeof(float), 0, 4 * (size_t)n, q);
-    free(state);
-    free(gid);
-    free(q);
+    particles_place(dev, p, features, h);
+    particles_host_free(h);
 }
 
 double *particles_read(struct device *dev, const struct buffer *buffer, bool is_float, size_t first, size_t n)
@@ -192,16 +227,8 @@ struct particles_host *particles_download(
     struct device *dev, const struct particles *p, const struct features *f, const struct scene *scene, const struct elements_host *first)
 {
     size_t n = (size_t)p->n_owned, bytes = state_bytes(f);
-    struct particles_host *h = fail_alloc(sizeof *h);
+    struct particles_host *h = particles_host_create(p->n_owned);
     char *state = fail_alloc(n * bytes);
-    h->n = p->n_owned;
-    h->gid = fail_alloc(n * sizeof *h->gid);
-    h->x = fail_alloc(3 * n * sizeof *h->x);
-    h->v = fail_alloc(3 * n * sizeof *h->v);
-    h->w = fail_alloc(3 * n * sizeof *h->w);
-    h->radius = fail_alloc(n * sizeof *h->radius);
-    h->mass = fail_alloc(n * sizeof *h->mass);
-    h->material = fail_alloc(n * sizeof *h->material);
     buffer_read(dev, &p->field[FIELD_STATE].now, 0, n * bytes, state);
     buffer_read(dev, &p->field[FIELD_GID].now, 0, n * sizeof *h->gid, h->gid);
     for (size_t i = 0; i < n; i++) {
@@ -211,15 +238,12 @@ struct particles_host *particles_download(
             h->v[3 * i + (size_t)a] = number(tail, f->real_is_float, a);
             if (f->spin) h->w[3 * i + (size_t)a] = number(tail, f->real_is_float, 4 + a);
         }
+        particles_host_kind(h, (int64_t)i, scene, first);
         h->radius[i] = number(head, f->position_is_float, 3);
-        h->material[i] = first->material[h->gid[i]];
-        h->mass[i] = mass_of(scene, h->material[i], first->radius[h->gid[i]]);
     }
     if (f->orientation) {
+        free(h->q);
         h->q = particles_read(dev, &p->field[FIELD_ORIENTATION].now, f->real_is_float, 0, 4 * n);
-    } else {
-        h->q = fail_alloc(4 * n * sizeof *h->q);
-        for (size_t i = 0; i < n; i++) h->q[4 * i] = 1;
     }
     free(state);
     return h;

@@ -41,10 +41,6 @@ static inline size_t particles_preal(const struct features *f)
 struct particles *particles_create(struct device *dev, const struct features *features, const struct program *lists);
 void particles_free(struct device *dev, struct particles *p);
 
-/* Takes over the elements of which take[i] is set. mass: [kg] by element. */
-void particles_upload(struct device *dev, struct particles *p, const struct features *features, const struct elements_host *elements,
-    const struct scene *scene, const unsigned char *take);
-
 /* Room for n elements in all; what the fields hold for the first `keep` elements stays. */
 void particles_reserve(struct device *dev, struct particles *p, const struct features *features, int64_t n, int64_t keep);
 /* The spare buffers, contents lost. */
@@ -63,7 +59,19 @@ struct particles_host {
 };
 struct particles_host *particles_download(
     struct device *dev, const struct particles *p, const struct features *features, const struct scene *scene, const struct elements_host *first);
+/* n elements, all numbers zero but the quaternions' w. */
+struct particles_host *particles_host_create(int64_t n);
+/* Radius, material and mass of row i, by its gid. */
+void particles_host_kind(struct particles_host *host, int64_t i, const struct scene *scene, const struct elements_host *first);
 void particles_host_free(struct particles_host *host);
+
+/* Takes over the elements of which take[i] is set. mass: [kg] by element. */
+void particles_upload(struct device *dev, struct particles *p, const struct features *features, const struct elements_host *elements,
+    const struct scene *scene, const unsigned char *take);
+/* The same of rows that are here already; without p->n_global. */
+void particles_place(struct device *dev, struct particles *p, const struct features *features, const struct particles_host *host);
+/* Writes places and motions of the owned elements anew, in their order. */
+void particles_write_state(struct device *dev, struct particles *p, const struct features *features, const struct particles_host *host);
 
 /* real or preal array on the device to doubles on the host, and back; n numbers, blocking. */
 double *particles_read(struct device *dev, const struct buffer *buffer, bool is_float, size_t first, size_t n);

@@ -8,6 +8,7 @@
 #include "fail.h"
 #include "lattice_schemes.h"
 #include "report.h"
+#include "resume.h"
 #include "version.h"
 
 static void add_devices(struct report *r, const struct sim *s)
@@ -60,7 +61,7 @@ static void add_scale(struct report *r, struct sim *s)
     report_number(r, "mean", s->n_imbalance ? s->imbalance_sum / (double)s->n_imbalance : 0);
     report_number(r, "max", s->imbalance_max);
     report_end(r);
-    report_number(r, "halo_bytes_per_step", s->step > 0 ? (double)sum[1] / (double)s->step : 0);
+    report_number(r, "halo_bytes_per_step", s->step > s->begun_at ? (double)sum[1] / (double)(s->step - s->begun_at) : 0);
     report_number(r, "device_bytes_per_element", (double)sum[2] / (double)(s->n_first > 0 ? s->n_first : 1));
 }
 
@@ -74,6 +75,17 @@ static void add_plain_steps(struct report *r, const struct sim *s)
     report_begin(r, "plain_steps");
     report_integer(r, "steps", s->n_plain);
     for (int i = 0; i < 6; i++) report_integer(r, name[i], sum[i]);
+    report_end(r);
+}
+
+/* Times, bytes and plain steps are of this process; steps, energies and counters of the run as a whole. */
+static void add_resumed(struct report *r, const struct sim *s)
+{
+    const char *slash = strrchr(s->from->path, '/');
+    report_begin(r, "resumed");
+    report_text(r, "frame", slash + 1);
+    report_integer(r, "step", s->begun_at);
+    report_number(r, "time", (double)s->begun_at * s->dt);
     report_end(r);
 }
 
@@ -109,6 +121,7 @@ bool record_write(struct sim *s, int exit_code, bool observed)
     report_begin(r, "features");
     s->ops->report_features(s, r);
     report_end(r);
+    if (s->from) add_resumed(r, s);
     add_scale(r, s);
     add_plain_steps(r, s);
     if (s->options->profile) {
@@ -123,8 +136,8 @@ bool record_write(struct sim *s, int exit_code, bool observed)
     bool written = report_write(r, s->comm, s->options->dir);
     if (observed) {
         double loop = s->timers.total[TIMER_LOOP];
-        log_print(s->log, "%lld steps of %lld elements in %.2f s: %.3g million element steps per second", (long long)s->step, (long long)s->n_first,
-            loop, loop > 0 ? s->element_steps / loop * 1e-6 : 0);
+        log_print(s->log, "%lld steps of %lld elements in %.2f s: %.3g million element steps per second", (long long)(s->step - s->begun_at),
+            (long long)s->n_first, loop, loop > 0 ? s->element_steps / loop * 1e-6 : 0);
         log_print(s->log, "digest %s", whole ? digest : "none: the state holds NaN");
     }
     report_free(r);

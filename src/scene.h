@@ -237,6 +237,8 @@ struct scene_errors {
 /* Reads and checks `path`, with `set` (n_set strings KEY=VALUE, KEY as dotted path: time.end=1s, walls[1].motion.remove_at=0.2s) applied.
  * Returns NULL when `errors` is not empty. Not collective: every rank reads; each gets the same answer. */
 struct scene *scene_read(const char *path, const char *const *set, int n_set, struct scene_errors *errors);
+/* The same of a text [n]; `path` is what it is called, and its folder is what paths are relative to. */
+struct scene *scene_read_text(const char *path, const char *text, size_t n, const char *const *set, int n_set, struct scene_errors *errors);
 void scene_free(struct scene *scene);
 void scene_errors_add(struct scene_errors *errors, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void scene_errors_free(struct scene_errors *errors);

@@ -293,7 +293,7 @@ SPHERE_KEYS("boundaries[].where", boundary, where., AT_MOST_ONE),
     .words = "displacement|rotation|velocity|angular_velocity|stress|von_mises|broken|id|body|material|owner",
     .at = AT(scene, output.field), .count_at = AT(scene, output.n_field), .text = "what a frame shows of each cell"},
 {"output.checkpoint_every", KEY_NUMBER, OPTIONAL, UNIT_TIME, "0", FROM_ZERO, .at = AT(scene, output.checkpoint_every),
-    .text = "time between further frames for resume; 0: none"},
+    .text = "time between further frames, for `democles resume`; 0: none"},
 
 {"measure", KEY_LIST, .at = AT(scene, measure), .count_at = AT(scene, n_measure), .size = sizeof(struct measure), .label_at = AT(measure, line),
     .text = "time series, one CSV file each"},

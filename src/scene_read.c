@@ -38,13 +38,13 @@ static char *folder_of(const char *path)
     return folder;
 }
 
-/* Stem of the file; of its folder where the file is called scene.yaml. */
+/* Stem of the file; of its folder where the file is called scene.yaml, or resolved.yaml as in a folder of results. */
 static char *name_of(const char *path)
 {
     char *absolute = realpath(path, NULL);
     char *rest = absolute ? absolute : fail_strdup(path);
     char *slash = strrchr(rest, '/');
-    if (slash && strcmp(slash + 1, "scene.yaml") == 0 && slash > rest) {
+    if (slash && (strcmp(slash + 1, "scene.yaml") == 0 || strcmp(slash + 1, "resolved.yaml") == 0) && slash > rest) {
         *slash = '\0';
         slash = strrchr(rest, '/');
         char *name = fail_strdup(slash ? slash + 1 : rest);
@@ -72,11 +72,16 @@ struct scene *scene_read(const char *path, const char *const *set, int n_set, st
 {
     size_t n;
     char *text = read_file(path, &n, errors);
-    if (!text) return NULL;
+    struct scene *scene = text ? scene_read_text(path, text, n, set, n_set, errors) : NULL;
+    free(text);
+    return scene;
+}
+
+struct scene *scene_read_text(const char *path, const char *text, size_t n, const char *const *set, int n_set, struct scene_errors *errors)
+{
     struct scene_yaml_error error;
     struct scene_reader reader = {.path = path, .set = set};
     reader.root = scene_yaml_parse(text, n, 0, &error);
-    free(text);
     if (!reader.root) {
         scene_errors_add(errors, "%s:%d:%d: %s", path, error.line, error.column, error.text);
         return NULL;

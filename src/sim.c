@@ -6,6 +6,7 @@
 
 #include "fail.h"
 #include "output.h"
+#include "resume.h"
 #include "signals.h"
 #include "wake.h"
 
@@ -42,12 +43,30 @@ static void count_steps(struct sim *s)
         fail_stop_together(EXIT_SCENE, "%s: time.step: auto takes %.3g s, too many steps until time.end; give a value", s->scene->path, s->dt);
     s->n_step = (int64_t)ceil(s->scene->time.end / s->dt * (1 - 1e-12));
     if (s->options->n_step >= 0 && s->options->n_step < s->n_step) s->n_step = s->options->n_step;
+    if (s->from && s->from->step > s->n_step)
+        fail_stop_together(s->n_step == s->options->n_step ? EXIT_USAGE : EXIT_SCENE, "'%s' is of step %lld, the run is to end with step %lld",
+            s->from->path, (long long)s->from->step, (long long)s->n_step);
+}
+
+/* At the start of a run; one that goes on has looked at its limit already. */
+static void begin(struct sim *s)
+{
+    if (!s->from) {
+        s->ops->check_limit(s);
+        return;
+    }
+    resume_close(s->options->from);
+    s->begun_at = s->step;
+    s->observed = true;
+    log_print(s->log, "goes on from step %lld, t = %.9g s, of '%s'", (long long)s->step, (double)s->step * s->dt, s->from->path);
+    if (s->step == s->n_step || s->rest.reached) log_print(s->log, "nothing is left to do");
 }
 
 struct sim *sim_create(struct scene *scene, struct comm *comm, struct log *log, const struct sim_options *options)
 {
     struct sim *s = fail_alloc(sizeof *s);
     s->options = options;
+    s->from = options->from;
     s->scene = scene;
     s->comm = comm;
     s->log = log;
@@ -57,6 +76,7 @@ struct sim *sim_create(struct scene *scene, struct comm *comm, struct log *log, 
     timer_begin(&s->timers, TIMER_SETUP);
     s->ops->read(s);
     s->ops->plan(s);
+    if (s->from) resume_check_inputs(s);
     count_steps(s);
     s->dev = device_open(comm, options->device, !s->features.real_is_float || !s->features.position_is_float, options->profile);
     share_cores(s);
@@ -65,7 +85,7 @@ struct sim *sim_create(struct scene *scene, struct comm *comm, struct log *log, 
     log_print(log, "%s", scene->title ? scene->title : scene->name);
     log_print(log, "%d rank%s on %s (%s)", comm->n_rank, comm->n_rank > 1 ? "s" : "", s->dev->name, s->dev->platform_version);
     s->ops->setup(s);
-    s->ops->check_limit(s);
+    begin(s);
     log_print(log, "time step %.4g s (%.2g of the limit %.4g s of the present contacts), %lld steps", s->dt, s->dt / s->dt_limit, s->dt_limit,
         (long long)s->n_step);
     s->ops->warn(s);
@@ -113,7 +133,8 @@ static int close_run(struct sim *s, bool stopped)
 {
     bool restless = s->rest.next > 0 && !s->rest.reached && !stopped && (double)s->step * s->dt >= s->scene->time.end * (1 - 1e-12);
     int code = stopped ? EXIT_STOPPED : restless ? EXIT_NUMERICS : EXIT_DONE;
-    if (stopped) log_print(s->log, "stopped on request at step %lld; a frame was written", (long long)s->step);
+    if (stopped)
+        log_print(s->log, "stopped on request at step %lld; a frame was written, `democles resume %s` goes on", (long long)s->step, s->options->dir);
     if (s->rest.reached) log_print(s->log, "at rest after step %lld", (long long)s->step);
     output_close(s, code);
     if (restless)
@@ -129,7 +150,7 @@ int sim_run(struct sim *s)
     double *total = s->timers.total;
     total[TIMER_EXCHANGE] = total[TIMER_WAIT] = total[TIMER_REGROUP] = 0; /* the set-up's belong to TIMER_SETUP */
     timer_begin(&s->timers, TIMER_LOOP);
-    output_write(s, s->n_step == 0);
+    if (!s->from) output_write(s, s->n_step == 0);
     while (s->step < s->n_step && !stop && !s->rest.reached) {
         const struct device_counters before = s->dev->counters;
         int64_t n_rebuild = s->n_rebuild;

@@ -21,6 +21,7 @@ struct sim_options {
     enum precision precision;   /* PRECISION_DEFAULT: the scene's */
     int64_t n_step;             /* last step, -1: from the scene's end */
     double max_time;            /* [s] of wall time; infinity: none */
+    struct resume *from;        /* frame in `dir` to go on from; NULL: from the start */
 };
 
 struct sim {
@@ -34,6 +35,8 @@ struct sim {
     int64_t n_first;             /* elements at the start, of all ranks */
     double domain[6], period[3]; /* box low, high [m]; 0 where not periodic */
     const struct step_ops *ops;
+    const struct resume *from; /* NULL: from the start */
+    int64_t inputs;            /* checksum of elements and walls, or cells and loads, as the scene makes them */
 
     struct lattice_run *solid; /* lattice method: lattice_method.h */
 
@@ -58,6 +61,7 @@ struct sim {
     double box[6];              /* of all elements of all ranks at the last build */
 
     int64_t step, n_step;     /* now; last */
+    int64_t begun_at;         /* step at which this process took up the run */
     int64_t cut_at, limit_at; /* of the last partition; of the last look at the limit */
     bool observed;            /* the state on the device is that of a full step */
     double dt, dt_limit;      /* [s]; rigorous limit at the last build */

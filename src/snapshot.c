@@ -1,6 +1,5 @@
 #include "snapshot.h"
 #include "fail.h"
-#include "h5_check.h"
 #include "h5_write.h"
 
 #include <stdio.h>
@@ -142,6 +141,7 @@ static void write_state(struct h5_writer *writer, const struct frame *frame, str
     hid_t counts = h5_group(writer, state, "rows");
     for (int t = 0; t < frame->n_state; t++) write_table(writer, state, counts, frame, &frame->state[t]);
     H5Gclose(counts);
+    h5_attribute(writer, state, "n_dataset", COLUMN_I64, 0, &writer->n_dataset);
     H5Gclose(state);
 }
 
@@ -154,55 +154,4 @@ void snapshot_write(const struct comm *comm, const char *dir, const struct frame
     write_state(writer, frame, points);
     h5_finish(writer);
     free(path);
-}
-
-/* What is wrong with the object `name` below `parent` (and with all below it), or NULL. An own walk: H5Ovisit of HDF5 1.10 loses handles where an
- * object cannot be opened. Hard links are read twice. */
-static char *check_object(hid_t parent, const char *name, const char *path)
-{
-    hid_t object = H5Oopen(parent, name, H5P_DEFAULT);
-    if (object < 0) return fail_format("%s: cannot be opened", path);
-    char *wrong = NULL, child[256];
-    H5G_info_t info = {.nlinks = 0};
-    if (H5Iget_type(object) == H5I_DATASET) {
-        const char *text = h5_check_dataset(object);
-        if (text) wrong = fail_format("%s: %s", path, text);
-    } else if (H5Gget_info(object, &info) < 0) {
-        wrong = fail_format("%s: cannot be listed", path);
-    }
-    for (hsize_t k = 0; k < info.nlinks && !wrong; k++) {
-        ssize_t n = H5Lget_name_by_idx(object, ".", H5_INDEX_NAME, H5_ITER_INC, k, child, sizeof child, H5P_DEFAULT);
-        char *child_path = fail_format("%s/%s", path, n > 0 ? child : "?");
-        wrong = n > 0 ? check_object(object, child, child_path) : fail_format("%s: cannot be listed", path);
-        free(child_path);
-    }
-    H5Oclose(object);
-    return wrong;
-}
-
-static char *check_file(hid_t file)
-{
-    const char *const group[] = {"VTKHDF", "democles"};
-    char *wrong = NULL;
-    for (int k = 0; k < 2 && !wrong; k++) {
-        htri_t exists = H5Lexists(file, group[k], H5P_DEFAULT);
-        if (exists < 0) wrong = fail_strdup("its list of groups cannot be read");
-        else if (exists == 0) wrong = fail_format("no frame of democles: it has no group %s", group[k]);
-        else wrong = check_object(file, group[k], group[k]);
-    }
-    return wrong;
-}
-
-char *snapshot_check(const char *path)
-{
-    H5E_auto2_t print;
-    void *print_data;
-    H5dont_atexit(); /* HDF5 1.10 loses count of a damaged file, and would complain on stderr when the program ends */
-    H5Eget_auto2(H5E_DEFAULT, &print, &print_data);
-    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-    hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
-    char *wrong = file < 0 ? fail_format("cannot be opened: %s", h5_check_error()) : check_file(file);
-    if (file >= 0) H5Fclose(file);
-    H5Eset_auto2(H5E_DEFAULT, print, print_data);
-    return wrong;
 }

@@ -3,7 +3,8 @@
  * frame_000123.hdf holds
  *   /VTKHDF        unstructured grid of one vertex, or hexahedron, per element: Points, PointData/NAME, CellData/NAME, FieldData/TimeValue; one part
  *                  per rank, rank after rank
- *   /democles      attributes format_version, step, time, index, n_element and the caller's; dataset resolved (the scene as YAML)
+ *   /democles      attributes format_version, step, time, index, n_element, n_dataset (in the whole file) and the caller's; dataset resolved (the
+ *                  scene as YAML)
  *   /democles/TABLE/COLUMN   every table of the state, rank after rank;  /democles/rows/TABLE [n_rank] says how many rows each rank had
  * Every dataset carries the attributes name, unit, description and checksum (see h5_check.h).
  * A column of the state that is a point or cell column too (same name, memory, type, width) is a hard link to it, not a copy.
@@ -14,7 +15,7 @@
 #include "../comm/comm.h"
 #include "column.h"
 
-enum { SNAPSHOT_FORMAT_VERSION = 1 };
+enum { SNAPSHOT_FORMAT_VERSION = 2 };
 
 /* A number that belongs to the frame as a whole, the same on every rank: an attribute of /democles. */
 struct frame_scalar {
@@ -44,8 +45,8 @@ void snapshot_write(const struct comm *comm, const char *dir, const struct frame
 /* `DIR/frame_000123.hdf` in fresh memory, owned by the caller. */
 char *snapshot_path(const char *dir, int64_t index);
 
-/* Reads every dataset of a frame and compares its checksum. Serial (call it on one rank). Returns NULL if the frame is whole,
- * else what is wrong with it, in fresh memory owned by the caller. */
-char *snapshot_check(const char *path);
+/* Compares the frame's version and number of datasets, reads every dataset, each rank its share, and compares its checksum. Returns NULL if the
+ * frame is whole, else what is wrong with it, in fresh memory owned by the caller, the same on every rank. Collective; `comm` NULL: alone. */
+char *snapshot_check(const struct comm *comm, const char *path);
 
 #endif

@@ -119,13 +119,15 @@ void wall_contacts_free(struct device *dev, struct wall_contacts *w)
     free(w);
 }
 
+/* The batch that has the step. Batches begin at the same steps whenever the run itself began. */
 static void new_batch(struct device *dev, struct wall_contacts *w, int64_t step, bool upload)
 {
+    int64_t first = step / WALL_BATCH * WALL_BATCH;
     size_t n = WALL_BATCH * (size_t)w->walls->n_wall;
     double *row = fail_alloc(n * POSE_WIDTH * sizeof *row);
-    if (w->comm->rank == 0) walls_poses(w->walls, w->dt, step, WALL_BATCH, w->poses);
+    if (w->comm->rank == 0) walls_poses(w->walls, w->dt, first, WALL_BATCH, w->poses);
     comm_bcast(w->comm, w->poses, n * sizeof *w->poses, 0);
-    w->batch_first = step;
+    w->batch_first = first;
     if (!upload) {
         free(row);
         return;

@@ -98,7 +98,7 @@ static void record(const struct comm *comm, const char *dir)
 int main(int argc, char **argv)
 {
     if (argc > 2 && !strcmp(argv[1], "check")) {
-        char *wrong = snapshot_check(argv[2]);
+        char *wrong = snapshot_check(NULL, argv[2]);
         if (wrong) printf("%s\n", wrong);
         free(wrong);
         return 0;

@@ -43,7 +43,8 @@ static void refuses_with_the_nearest_word(void **state)
     refuses("rnu a.yaml", "there is no command 'rnu'; did you mean 'run'?");
     refuses("simulate a.yaml", "there is no command 'simulate'; see `democles --help`");
     refuses("--quiet run a.yaml", "a command has to come first, not '--quiet'; see `democles --help`");
-    refuses("resume out", "this version cannot resume yet");
+    refuses("resume", "`democles resume` needs a DIR");
+    refuses("resume out --force", "`democles resume` has no option '--force'; see `democles resume --help`");
     refuses("run", "`democles run` needs a SCENE");
     refuses("check --resolved", "`democles check` needs a SCENE");
     refuses("run a.yaml b.yaml", "`democles run` takes one SCENE, not both 'a.yaml' and 'b.yaml'");
@@ -114,8 +115,13 @@ static void defaults_of_run(void **state)
 static void takes_other_commands(void **state)
 {
     (void)state;
+    char resume[] = "resume out/a --steps 9 --set time.end=1s --max-time 2m --device 0:0 --quiet";
     char check[] = "check --resolved s.yaml", devices[] = "devices --ranks 4", explain[] = "explain", help[] = "run --help", version[] = "--version";
-    struct options o = parse(check);
+    struct options o = parse(resume);
+    assert_true(!o.error && o.command == OPTIONS_RESUME && o.run.n_step == 9 && o.n_set == 1);
+    assert_string_equal(o.operand, "out/a");
+    options_free(&o);
+    o = parse(check);
     assert_true(!o.error && o.command == OPTIONS_CHECK && o.resolved);
     options_free(&o);
     o = parse(devices);
@@ -153,9 +159,10 @@ static void help_offers_what_is_known(void **state)
         enum options_command command;
         const char *name, *option[9];
     } expected[] = {{OPTIONS_RUN, "run", {"-o DIR", "--set KEY=VALUE", "--force", "--device", "--precision", "--steps N", "--max-time", "--quiet"}},
+        {OPTIONS_RESUME, "resume", {"--set KEY=VALUE", "--device", "--steps N", "--max-time", "--quiet", "--profile"}},
         {OPTIONS_CHECK, "check", {"--set KEY=VALUE", "--resolved"}}, {OPTIONS_DEVICES, "devices", {"--ranks N"}},
         {OPTIONS_EXPLAIN, "explain", {"--help"}}};
-    for (int c = 0; c < 4; c++) {
+    for (int c = 0; c < 5; c++) {
         char *text = help_of(expected[c].command);
         for (int k = 0; expected[c].option[k]; k++) {
             char *begin = fail_format("\n    %s ", expected[c].option[k]);
@@ -172,8 +179,7 @@ static void help_offers_what_is_known(void **state)
         free(text);
     }
     char *text = help_of(OPTIONS_NONE);
-    for (int c = 0; c < 4; c++) assert_non_null(strstr(text, expected[c].name));
-    assert_null(strstr(text, "resume"));
+    for (int c = 0; c < 5; c++) assert_non_null(strstr(text, expected[c].name));
     free(text);
 }
 

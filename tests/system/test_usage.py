@@ -20,7 +20,7 @@ class Usage(cli.Case):
     def test_help(self):
         run = self.call("--help")
         self.assertEqual((run.code, run.err), (0, []))
-        self.assertEqual(re.findall(r"^    democles ([a-z]+)", run.out, re.M), ["run", "check", "devices", "explain"])
+        self.assertEqual(re.findall(r"^    democles ([a-z]+)", run.out, re.M), ["run", "resume", "check", "devices", "explain"])
         run = self.call("run", "--help", ranks=3)
         self.assertEqual((run.code, run.err, run.out.count("usage: democles run SCENE [OPTION]...")), (0, [], 1))
 
