@@ -70,6 +70,12 @@ void device_finish(struct device *dev);
 /* Has the device begin with what is in the compute queue; without it a driver may wait for more. */
 void device_flush(struct device *dev);
 
+/* Whether the host's thread has to share cores with the device's. */
+static inline bool device_shares_cores(const struct device *dev)
+{
+    return dev->type & CL_DEVICE_TYPE_CPU;
+}
+
 /* True when the event has completed; stops if its command failed. Does not block and does not release. */
 bool device_event_done(cl_event event);
 

@@ -37,12 +37,11 @@ static void evaluate(struct lattice *l, int x_in, int x_out, int v_in, int v_out
     }
     if (l->halo) {
         int n_first = c->n_force_interior * 3 / 4;
-        lattice_halo_begin(l->dev, l->halo, x_at(l, x_in), v_at(l, v_in));
+        lattice_halo_begin(l->dev, l->halo, x_at(l, x_in), v_at(l, v_in), l->timers);
         if (l->features.volume) run(l, l->volume, 0, c->n_volume_interior, NULL);
         run(l, l->force, 0, n_first, &most);
         run(l, l->force, n_first, c->n_force_interior - n_first, NULL);
         device_flush(l->dev);
-        lattice_halo_read(l->dev, l->halo);
         lattice_halo_swap(l->dev, l->halo, &most, l->timers);
     }
     int n_volume = l->halo ? c->n_volume_interior : 0, n_force = l->halo ? c->n_force_interior : 0;

@@ -67,6 +67,7 @@ bool output_due(const struct sim *s, int64_t step)
 void output_write(struct sim *s, bool last)
 {
     struct outputs *out = s->output;
+    const struct timers before = s->timers;
     timer_begin(&s->timers, TIMER_OUTPUT);
     measures_write(s, out->measures);
     if ((last || frame_due(s, s->step)) && out->frame_step != s->step) {
@@ -75,6 +76,8 @@ void output_write(struct sim *s, bool last)
         out->frame_step = s->step;
     }
     timer_end(&s->timers, TIMER_OUTPUT);
+    s->timers.total[TIMER_EXCHANGE] = before.total[TIMER_EXCHANGE]; /* what the output exchanges is the output's */
+    s->timers.total[TIMER_WAIT] = before.total[TIMER_WAIT];
 }
 
 /* The clock is read at every step, the folder is looked at twice a second. */

@@ -42,13 +42,10 @@ void particle_forces(struct sim *s)
     const struct pair_list *l = &s->pairs->now;
     cl_event most = NULL;
     if (s->wall_contacts) wall_contacts_set_step(s->dev, s->wall_contacts, s->step);
-    timer_begin(&s->timers, TIMER_EXCHANGE);
-    ghosts_begin(s->dev, s->ghosts, s->particles);
-    timer_end(&s->timers, TIMER_EXCHANGE);
+    ghosts_begin(s->dev, s->ghosts, s->particles, &s->timers);
     launch_interior(s, &most);
     launch_walls(s);
     device_flush(s->dev);
-    ghosts_read(s->dev, s->ghosts);
     const cl_event *arrived = ghosts_swap(s->dev, s->ghosts, s->particles, &most, &s->timers);
     launch_pairs(s, l->first_boundary, l->n_boundary, arrived, NULL);
 }

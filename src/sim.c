@@ -84,7 +84,11 @@ static void progress(struct sim *s, bool end)
 /* Lists, lost elements and requests, as agreed beside the step before. Returns whether this step is to be the last. */
 static bool look_around(struct sim *s)
 {
+    timer_begin(&s->timers, TIMER_EXCHANGE);
+    timer_begin(&s->timers, TIMER_WAIT);
     int32_t agreed = watch_agreed(&s->watch, s->comm);
+    timer_end(&s->timers, TIMER_WAIT);
+    timer_end(&s->timers, TIMER_EXCHANGE);
     if (agreed & WATCH_LOST) output_stop_numerics(s, "positions or velocities are not numbers any more");
     if (agreed & WATCH_STALE || s->ops->stale(s)) {
         timer_begin(&s->timers, TIMER_REGROUP);
@@ -128,6 +132,9 @@ int sim_run(struct sim *s)
     signals_keep();
     double *total = s->timers.total;
     total[TIMER_EXCHANGE] = total[TIMER_WAIT] = total[TIMER_REGROUP] = 0; /* the set-up's belong to TIMER_SETUP */
+    struct step_counts counts;
+    s->ops->count(s, &counts);
+    s->sent_before = counts.sent;
     timer_begin(&s->timers, TIMER_LOOP);
     output_write(s, s->n_step == 0);
     while (s->step < s->n_step && !stop && !s->rest.reached) {

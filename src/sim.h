@@ -80,7 +80,8 @@ struct sim {
     double element_steps;         /* elements times steps so far */
     struct device_counters plain; /* what the plain steps added: those without regroup, observation or the step after one */
     int64_t n_plain;
-    double started; /* timer_now at the start */
+    struct halo_traffic sent_before; /* by this rank before the first step */
+    double started;                  /* timer_now at the start */
 };
 
 /* Reads nothing: the scene is there. Opens the device, builds kernels, makes elements, lists and output. Collective; errors stop all ranks. */

@@ -1,0 +1,50 @@
+#include "exchange.h"
+
+void exchange_settle(struct device *dev, struct halo *halo, struct timers *timers)
+{
+    (void)dev;
+    timer_begin(timers, TIMER_EXCHANGE);
+    timer_begin(timers, TIMER_WAIT);
+    halo_end(halo);
+    timer_end(timers, TIMER_WAIT);
+    timer_end(timers, TIMER_EXCHANGE);
+}
+
+void exchange_post(struct device *dev, struct halo *halo, struct timers *timers)
+{
+    (void)dev;
+    timer_begin(timers, TIMER_EXCHANGE);
+    halo_begin_recv(halo);
+    timer_end(timers, TIMER_EXCHANGE);
+}
+
+void exchange_send(struct device *dev, struct halo *halo, cl_event read, struct timers *timers)
+{
+    if (device_shares_cores(dev)) check_cl(clWaitForEvents(1, &read));
+    while (!device_event_done(read)) {
+        halo_poll(halo);
+        comm_pause(halo->comm);
+    }
+    timer_begin(timers, TIMER_EXCHANGE);
+    halo_begin_send(halo);
+    timer_end(timers, TIMER_EXCHANGE);
+}
+
+void exchange_receive(struct device *dev, struct halo *halo, cl_event *most, struct timers *timers)
+{
+    if (device_shares_cores(dev)) check_cl(clWaitForEvents(1, most));
+    check_cl(clReleaseEvent(*most));
+    timer_begin(timers, TIMER_EXCHANGE);
+    timer_begin(timers, TIMER_WAIT);
+    while (!halo_poll(halo)) comm_pause(halo->comm);
+    timer_end(timers, TIMER_WAIT);
+    timer_end(timers, TIMER_EXCHANGE);
+}
+
+void exchange_release(cl_event *event)
+{
+    if (!*event) return;
+    check_cl(clWaitForEvents(1, event));
+    check_cl(clReleaseEvent(*event));
+    *event = NULL;
+}
