@@ -26,6 +26,8 @@ struct device_counters {
     int64_t n_launch;              /* kernels enqueued */
 };
 
+struct trace;
+
 struct device {
     cl_platform_id platform;
     cl_device_id id;
@@ -49,6 +51,7 @@ struct device {
     const char *dump_dir; /* where the source of a kernel that does not build is written; NULL: $TMPDIR or /tmp. Borrowed */
     struct device_counters counters;
     struct memory_table memory;
+    struct trace *trace; /* where commands are noted; NULL but in steps that are traced (trace.h). Borrowed */
 };
 
 /* Collective. `choice`: NULL, or "PLATFORM:DEVICE" where each part is an index, a part of the name (or of the platform's version: "pocl") in any

@@ -1,5 +1,5 @@
 /* The host's part of an exchange within a step, the same for both methods: when it sleeps, sends and looks for what has arrived, how long that takes
- * (timer.h). What travels, and how it gets from and to the device, is the caller's business.
+ * (timer.h) and where it stands in the timeline (trace.h). What travels, and how it gets from and to the device, is the caller's business.
  *
  * Order of calls: settle, (pack and read-back enqueued), post, (interior enqueued), send, receive, (arrivals enqueued). */
 #ifndef DEMOCLES_EXCHANGE_H

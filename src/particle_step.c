@@ -9,6 +9,7 @@
 #include "../kernels/batch.h"
 #include "output.h"
 #include "signals.h"
+#include "trace.h"
 
 static void launch_pairs(struct sim *s, int64_t first, int64_t n, const cl_event *wait, cl_event *done)
 {
@@ -24,8 +25,10 @@ static void launch_pairs(struct sim *s, int64_t first, int64_t n, const cl_event
 static void launch_interior(struct sim *s, cl_event *most)
 {
     int64_t n = s->pairs->now.n_interior, n_first = s->comm->n_rank > 1 ? n * 3 / 4 / BATCH * BATCH : n;
+    trace_part(s->dev->trace, "interior");
     launch_pairs(s, 0, n_first, NULL, s->comm->n_rank > 1 ? most : NULL);
     launch_pairs(s, n_first, n - n_first, NULL, NULL);
+    trace_part(s->dev->trace, NULL);
 }
 
 static void launch_walls(struct sim *s)
@@ -47,7 +50,9 @@ void particle_forces(struct sim *s)
     launch_walls(s);
     device_flush(s->dev);
     const cl_event *arrived = ghosts_swap(s->dev, s->ghosts, s->particles, &most, &s->timers);
+    trace_part(s->dev->trace, "boundary");
     launch_pairs(s, l->first_boundary, l->n_boundary, arrived, NULL);
+    trace_part(s->dev->trace, NULL);
 }
 
 /* After the drift to the next step. */

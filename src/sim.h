@@ -11,16 +11,19 @@
 #include "owners.h"
 #include "step.h"
 #include "timer.h"
+#include "trace.h"
 #include "watch.h"
 
 /* From the command line. */
 struct sim_options {
-    const char *dir;            /* results */
-    bool force, quiet, profile; /* profile: device time of every kernel into run.json, at a small price */
-    const char *device;         /* NULL: best */
-    enum precision precision;   /* PRECISION_DEFAULT: the scene's */
-    int64_t n_step;             /* last step, -1: from the scene's end */
-    double max_time;            /* [s] of wall time; infinity: none */
+    const char *dir;                 /* results */
+    bool force, quiet, profile;      /* profile: device time of every kernel into run.json, at a small price */
+    bool trace;                      /* a timeline: trace.h */
+    int64_t trace_from, trace_steps; /* -1: as trace_create wants; how many */
+    const char *device;              /* NULL: best */
+    enum precision precision;        /* PRECISION_DEFAULT: the scene's */
+    int64_t n_step;                  /* last step, -1: from the scene's end */
+    double max_time;                 /* [s] of wall time; infinity: none */
 };
 
 struct sim {
@@ -69,6 +72,7 @@ struct sim {
     } rest;
     struct watch watch;
     struct timers timers;
+    struct trace *trace; /* NULL: none */
     struct outputs *output;
 
     /* account of the run */
