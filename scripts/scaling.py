@@ -84,13 +84,14 @@ def row(method, record, base, seed, cores):
 
 def notes(options, found, base, has_seed):
     first = next(iter(found.values()))
+    device, cores = first.raw["devices"][0], f"{options.cores} core{'s' if options.cores > 1 else ''}"
     lines = [f"{first.raw['title']}: {first.elements} elements, {first.raw['interactions']} interactions, {options.steps} steps, "
-             f"{first.raw['precision']}; {first.raw['devices'][0]['name']}, {first.raw['devices'][0]['platform_version']}; {options.cores} cores.",
+             f"{first.raw['precision']}; {device['name']}, {device['platform_version']}; {cores}.",
              "Time is that of all steps, without set-up and output. Shares are means over ranks; exchange is without wait."]
     if base and base.ranks > 1:
         lines.append(f"Speed-up is relative to {base.ranks} ranks, which count as {base.ranks}.")
     if max(options.ranks) > options.cores:
-        lines.append(f"More ranks than {options.cores} share cores: their times would say nothing and are not given. The rest holds.")
+        lines.append("More ranks than cores share them: their times would say nothing and are not given. The rest holds.")
     if has_seed:
         lines.append(f"Seed: {study.SEED_SOURCE}.")
     return lines
@@ -111,7 +112,7 @@ def draw(path, title, rows, seed, cores):
             axes[0, 0].plot(list(seed[method]), [s for s, _ in seed[method].values()], "x:", color=f"C{k}", label=f"seed, {method}")
     axes[0, 0].plot(ranks, ranks, color="0.8", lw=1, label="ideal", zorder=0)
     axes[0, 0].set_yscale("log", base=2)
-    axes[0, 0].set_title(f"measured up to {cores} ranks", size=10)
+    axes[0, 0].set_title(f"measured up to {cores} rank{'s' if cores > 1 else ''}", size=10)
     for axis in axes.flat:
         axis.set_xscale("log", base=2)
         axis.set_xlabel("ranks")
