@@ -26,7 +26,7 @@ def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scene", metavar="CASE|SCENE", help="a folder of cases/, or a scene")
     parser.add_argument("--ranks", type=study.numbers, default=[1, 2, 4, 8, 16], help="(default: 1,2,4,8,16)")
-    parser.add_argument("--methods", default="geometric,graph", help="partitioners (default: %(default)s)")
+    parser.add_argument("--methods", default="geometric,interactions,graph", help="partitioners; unknown ones are left out (default: %(default)s)")
     parser.add_argument("--steps", type=int, default=500, help="of each run (default: %(default)s)")
     parser.add_argument("--rounds", type=int, default=1, help="of the runs that are timed, round robin; the best counts (default: %(default)s)")
     parser.add_argument("--profile", action="store_true", help="times of kernels too, for model.py, at a small price")
