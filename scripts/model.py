@@ -62,12 +62,13 @@ class Traffic:
 
 
 def rates_of(record):
-    """From a run, best on one rank. Without kernel times the launches are part of the kernels."""
+    """From a run, best on one rank. Kernels that do not run in each step belong to the regroup. Without kernel times launches are part of them."""
     compute, mine = record.per_step("compute"), record.elements / record.ranks
     plain = record.raw["plain_steps"]
     launches = plain["launches"] / max(plain["steps"], 1) / record.ranks
     kernels = record.of("kernels")  # of rank 0
-    kernel = min(sum(k["seconds"] for k in kernels.values()) / record.steps, compute) if kernels else compute
+    of_steps = [k["seconds"] for k in kernels.values() if k["launches"] >= record.steps] if kernels else []
+    kernel = min(sum(of_steps) / record.steps, compute) if kernels else compute
     return Rates(kernel / mine, record.per_step("regroup") / mine, launches, (compute - kernel) / launches if launches > 0 else 0)
 
 
