@@ -117,7 +117,8 @@ void trace_step(struct trace *t, int64_t step)
 {
     if (!t || t->is_done) return;
     t->step = step;
-    if (step == t->first) {
+    if (!t->is_open && step >= t->first) {
+        t->first = step;
         device_finish(t->dev);
         compare_device(t, 0);
         compare_ranks(t);
