@@ -124,7 +124,6 @@ void halo_exchange(struct halo *halo, const void *send, void *recv, size_t recor
         check_mpi(MPI_Isend(at, count(halo->send_begin, k), type, halo->send_rank[k], TAG_ONCE, in->world, &request[halo->n_recv + k]));
     }
     check_mpi(MPI_Waitall(n, request, MPI_STATUSES_IGNORE));
-    halo->bytes_sent += halo->send_begin[halo->n_send] * (int64_t)record;
     check_mpi(MPI_Type_free(&type));
     free(request);
 }
@@ -160,7 +159,8 @@ void halo_begin_send(struct halo *halo)
     assert(in->bound && !in->sending);
     check_mpi(MPI_Startall(halo->n_send, halo->request + halo->n_recv));
     in->sending = true;
-    halo->bytes_sent += halo->send_begin[halo->n_send] * (int64_t)halo->record;
+    halo->sent.bytes += halo->send_begin[halo->n_send] * (int64_t)halo->record;
+    halo->sent.messages += halo->n_send;
 }
 
 bool halo_poll(struct halo *halo)

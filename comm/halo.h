@@ -8,6 +8,11 @@
 
 #include "comm.h"
 
+/* What a rank has sent within steps: halo_begin_send, not halo_exchange. */
+struct halo_traffic {
+    int64_t bytes, messages;
+};
+
 struct halo {
     const struct comm *comm;
     int n_send, n_recv;               /* neighbours that I send to, receive from (this rank may be its own neighbour) */
@@ -16,7 +21,7 @@ struct halo {
     size_t record;                    /* bytes per record of the persistent exchange */
     MPI_Request *request;             /* [n_recv + n_send], receives first */
     int n_open;                       /* receives not yet arrived */
-    int64_t bytes_sent;               /* by this rank since creation */
+    struct halo_traffic sent;         /* by this rank since creation */
     void *internal;
 };
 

@@ -6,6 +6,7 @@
 #include <sys/mman.h>
 
 #include "fail.h"
+#include "trace.h"
 
 enum {
     GRAIN = 256,        /* [byte] of capacity: one fill pattern, one GPU line at least */
@@ -19,7 +20,9 @@ void buffer_init(struct buffer *buffer, const char *name)
 
 static void fill(struct device *dev, struct buffer *buffer, cl_uint pattern)
 {
-    check_cl(clEnqueueFillBuffer(dev->compute, buffer->mem, &pattern, sizeof pattern, 0, buffer->capacity, 0, NULL, NULL));
+    cl_event *event = trace_event(dev->trace, NULL);
+    check_cl(clEnqueueFillBuffer(dev->compute, buffer->mem, &pattern, sizeof pattern, 0, buffer->capacity, 0, NULL, event));
+    trace_command(dev->trace, dev->compute, buffer->name, buffer->capacity, event);
     check_cl(clFinish(dev->compute)); /* the copy queue may use it next */
 }
 
@@ -151,7 +154,9 @@ void buffer_write_begin(struct device *dev, cl_command_queue queue, struct buffe
         if (n_wait > 0 || event) check_cl(clEnqueueMarkerWithWaitList(queue, n_wait, wait, event));
         return;
     }
+    event = trace_event(dev->trace, event);
     check_cl(clEnqueueWriteBuffer(queue, buffer->mem, CL_FALSE, offset, bytes, data, n_wait, wait, event));
+    trace_command(dev->trace, queue, buffer->name, bytes, event);
     dev->counters.n_h2d++;
     dev->counters.h2d_bytes += (int64_t)bytes;
 }
@@ -164,7 +169,9 @@ void buffer_read_begin(struct device *dev, cl_command_queue queue, const struct 
         if (n_wait > 0 || event) check_cl(clEnqueueMarkerWithWaitList(queue, n_wait, wait, event));
         return;
     }
+    event = trace_event(dev->trace, event);
     check_cl(clEnqueueReadBuffer(queue, buffer->mem, CL_FALSE, offset, bytes, data, n_wait, wait, event));
+    trace_command(dev->trace, queue, buffer->name, bytes, event);
     dev->counters.n_d2h++;
     dev->counters.d2h_bytes += (int64_t)bytes;
 }

@@ -26,6 +26,8 @@ struct device_counters {
     int64_t n_launch;              /* kernels enqueued */
 };
 
+struct trace;
+
 struct device {
     cl_platform_id platform;
     cl_device_id id;
@@ -49,6 +51,7 @@ struct device {
     const char *dump_dir; /* where the source of a kernel that does not build is written; NULL: $TMPDIR or /tmp. Borrowed */
     struct device_counters counters;
     struct memory_table memory;
+    struct trace *trace; /* where commands are noted; NULL but in steps that are traced (trace.h). Borrowed */
 };
 
 /* Collective. `choice`: NULL, or "PLATFORM:DEVICE" where each part is an index, a part of the name (or of the platform's version: "pocl") in any
@@ -69,6 +72,12 @@ int device_list(int n_rank, FILE *file);
 void device_finish(struct device *dev);
 /* Has the device begin with what is in the compute queue; without it a driver may wait for more. */
 void device_flush(struct device *dev);
+
+/* Whether the host's thread has to share cores with the device's. */
+static inline bool device_shares_cores(const struct device *dev)
+{
+    return dev->type & CL_DEVICE_TYPE_CPU;
+}
 
 /* True when the event has completed; stops if its command failed. Does not block and does not release. */
 bool device_event_done(cl_event event);

@@ -41,25 +41,22 @@ void ghosts_free(struct device *dev, struct ghosts *g)
     free(g);
 }
 
-int64_t ghosts_bytes_sent(const struct ghosts *g)
+struct halo_traffic ghosts_sent(const struct ghosts *g)
 {
-    return g->bytes_before + (g->halo ? g->halo->bytes_sent : 0);
-}
-
-static void release(cl_event *event)
-{
-    if (!*event) return;
-    check_cl(clWaitForEvents(1, event));
-    check_cl(clReleaseEvent(*event));
-    *event = NULL;
+    struct halo_traffic sent = g->before;
+    if (g->halo) {
+        sent.bytes += g->halo->sent.bytes;
+        sent.messages += g->halo->sent.messages;
+    }
+    return sent;
 }
 
 void ghosts_settle(struct device *dev, struct ghosts *g)
 {
     if (g->halo) halo_end(g->halo);
-    release(&g->written_event);
-    release(&g->read_event);
-    release(&g->packed_event);
+    exchange_release(&g->written_event);
+    exchange_release(&g->read_event);
+    exchange_release(&g->packed_event);
     device_finish(dev);
 }
 
@@ -163,7 +160,7 @@ void ghosts_plan(struct device *dev, struct ghosts *g, struct scan *scan, struct
     memcpy(mine.high, own->high, sizeof mine.high);
     comm_gather(comm, &mine, all, sizeof mine);
     choose(dev, g, scan, p, all, count_to);
-    g->bytes_before = ghosts_bytes_sent(g);
+    g->before = ghosts_sent(g);
     halo_free(g->halo);
     g->halo = halo_create(comm, count_to);
     g->n_recv = g->halo->recv_begin[g->halo->n_recv];
@@ -184,52 +181,29 @@ void ghosts_plan(struct device *dev, struct ghosts *g, struct scan *scan, struct
     free(all);
 }
 
-void ghosts_begin(struct device *dev, struct ghosts *g, const struct particles *p)
+void ghosts_begin(struct device *dev, struct ghosts *g, const struct particles *p, struct timers *timers)
 {
     if (g->comm->n_rank == 1) return;
-    halo_end(g->halo); /* of the step before: staging is free */
+    exchange_settle(dev, g->halo, timers);
     launch_bind_buffer(g->gather, "from", &p->field[FIELD_STATE].now);
     launch_run(g->gather, dev->compute, g->n_send, 0, NULL, &g->packed_event);
     check_cl(clFlush(dev->compute));
-    release(&g->written_event); /* long done: the receive staging is free */
-    halo_begin_recv(g->halo);
-}
-
-void ghosts_read(struct device *dev, struct ghosts *g)
-{
-    if (g->comm->n_rank == 1) return;
-    buffer_read_begin(dev, dev->copy, &g->packed, 0, (size_t)g->n_send * g->record, g->send_staging.host, 1, &g->packed_event, &g->read_event);
-    check_cl(clFlush(dev->copy));
-}
-
-/* Until the packed records are on the host. On a CPU the host thread sleeps, for the device computes on the same cores; elsewhere it drives MPI, and
- * does
- * not trust the driver's wait, which may be a spin without progress. */
-static void wait_packed(struct device *dev, struct ghosts *g)
-{
-    if (dev->type & CL_DEVICE_TYPE_CPU) check_cl(clWaitForEvents(1, &g->read_event));
-    while (!device_event_done(g->read_event)) {
-        halo_poll(g->halo);
-        comm_pause(g->comm);
-    }
+    buffer_read_begin(
+        dev, exchange_queue(dev), &g->packed, 0, (size_t)g->n_send * g->record, g->send_staging.host, 1, &g->packed_event, &g->read_event);
+    check_cl(clFlush(exchange_queue(dev)));
+    exchange_release(&g->written_event); /* long done: the receive staging is free */
+    exchange_post(dev, g->halo, timers);
 }
 
 const cl_event *ghosts_swap(struct device *dev, struct ghosts *g, struct particles *p, cl_event *most, struct timers *timers)
 {
     if (g->comm->n_rank == 1) return NULL;
-    wait_packed(dev, g);
-    halo_begin_send(g->halo);
-    if (dev->type & CL_DEVICE_TYPE_CPU) check_cl(clWaitForEvents(1, most));
-    check_cl(clReleaseEvent(*most));
-    timer_begin(timers, TIMER_EXCHANGE);
-    timer_begin(timers, TIMER_WAIT);
-    while (!halo_poll(g->halo)) comm_pause(g->comm);
-    timer_end(timers, TIMER_WAIT);
+    exchange_send(dev, g->halo, g->read_event, timers);
+    exchange_receive(dev, g->halo, most, timers);
     buffer_write_begin(dev, dev->copy, &p->field[FIELD_STATE].now, (size_t)p->n_owned * g->record, (size_t)g->n_recv * g->record,
         g->recv_staging.host, 0, NULL, &g->written_event);
     check_cl(clFlush(dev->copy));
-    release(&g->read_event);
-    release(&g->packed_event);
-    timer_end(timers, TIMER_EXCHANGE);
+    exchange_release(&g->read_event);
+    exchange_release(&g->packed_event);
     return &g->written_event;
 }

@@ -8,7 +8,7 @@
 
 #include "../comm/halo.h"
 #include "cells.h"
-#include "timer.h"
+#include "exchange.h"
 
 struct ghosts {
     const struct comm *comm;
@@ -21,7 +21,7 @@ struct ghosts {
     struct buffer packed;      /* [n_send] records */
     struct buffer send_staging, recv_staging;
     struct launch *select, *compact, *gather;
-    int64_t bytes_before; /* sent under earlier plans */
+    struct halo_traffic before; /* sent under earlier plans */
     cl_event packed_event, read_event, written_event;
 };
 
@@ -32,16 +32,13 @@ void ghosts_free(struct device *dev, struct ghosts *g);
 /* New plan and all that is static of new ghosts (state, gid, reach) behind the owned elements. `own`: bounds of owned elements. Collective. */
 void ghosts_plan(struct device *dev, struct ghosts *g, struct scan *scan, struct particles *p, const struct cells_bounds *own);
 
-/* Enqueues packing of what others need, posts receives. */
-void ghosts_begin(struct device *dev, struct ghosts *g, const struct particles *p);
-/* Enqueues its read-back: after the interior kernels, since pocl, which has one worker for kernels and copies, begins with what waited last. */
-void ghosts_read(struct device *dev, struct ghosts *g);
-/* Sends, waits for arrivals, enqueues their copy to the device. `most`: of the kernels that run meanwhile, an event shortly before their end,
- * released here: a host whose device computes on the same cores sleeps until then, instead of taking time from it by looking. Returns the event that
- * kernels on ghosts have to wait for (borrowed), NULL if there is nothing to wait for. */
+/* Enqueues packing of what others need and its read-back, posts receives. */
+void ghosts_begin(struct device *dev, struct ghosts *g, const struct particles *p, struct timers *timers);
+/* Sends, waits for arrivals, enqueues their copy to the device. `most`: see exchange_receive. Returns the event that kernels on ghosts have to wait
+ * for (borrowed), NULL if there is nothing to wait for. */
 const cl_event *ghosts_swap(struct device *dev, struct ghosts *g, struct particles *p, cl_event *most, struct timers *timers);
-/* Bytes that this rank has sent within steps since the start. */
-int64_t ghosts_bytes_sent(const struct ghosts *g);
+/* By this rank within steps since the start. */
+struct halo_traffic ghosts_sent(const struct ghosts *g);
 /* Before the plan or the staging buffers change: nothing is under way afterwards. */
 void ghosts_settle(struct device *dev, struct ghosts *g);
 

@@ -58,22 +58,14 @@ struct lattice_halo *lattice_halo_create(struct device *dev, const struct comm *
     return h;
 }
 
-static void release(cl_event *event)
-{
-    if (!*event) return;
-    check_cl(clWaitForEvents(1, event));
-    check_cl(clReleaseEvent(*event));
-    *event = NULL;
-}
-
 void lattice_halo_free(struct device *dev, struct lattice_halo *h)
 {
     if (!h) return;
     struct buffer *all[] = {&h->send, &h->recv, &h->packed, &h->arrived, &h->send_staging, &h->recv_staging};
     halo_end(h->halo);
-    release(&h->written_event);
-    release(&h->read_event);
-    release(&h->packed_event);
+    exchange_release(&h->written_event);
+    exchange_release(&h->read_event);
+    exchange_release(&h->packed_event);
     device_finish(dev);
     halo_free(h->halo);
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) buffer_free(dev, all[k]);
@@ -82,44 +74,29 @@ void lattice_halo_free(struct device *dev, struct lattice_halo *h)
     free(h);
 }
 
-void lattice_halo_begin(struct device *dev, struct lattice_halo *h, int64_t x_in, int64_t v_in)
+void lattice_halo_begin(struct device *dev, struct lattice_halo *h, int64_t x_in, int64_t v_in, struct timers *timers)
 {
-    halo_end(h->halo); /* of the exchange before: staging is free */
+    exchange_settle(dev, h->halo, timers);
     launch_set_long(h->pack, "x_in", x_in);
     launch_set_long(h->pack, "v_in", v_in);
     launch_set_long(h->unpack, "x_in", x_in);
     launch_set_long(h->unpack, "v_in", v_in);
     launch_run(h->pack, dev->compute, h->n_send, 0, NULL, &h->packed_event);
     check_cl(clFlush(dev->compute));
-    release(&h->written_event); /* long done: the receive staging is free */
-    halo_begin_recv(h->halo);
-}
-
-void lattice_halo_read(struct device *dev, struct lattice_halo *h)
-{
-    buffer_read_begin(dev, dev->copy, &h->packed, 0, (size_t)h->n_send * h->record, h->send_staging.host, 1, &h->packed_event, &h->read_event);
-    check_cl(clFlush(dev->copy));
+    buffer_read_begin(
+        dev, exchange_queue(dev), &h->packed, 0, (size_t)h->n_send * h->record, h->send_staging.host, 1, &h->packed_event, &h->read_event);
+    check_cl(clFlush(exchange_queue(dev)));
+    exchange_release(&h->written_event); /* long done: the receive staging is free */
+    exchange_post(dev, h->halo, timers);
 }
 
 void lattice_halo_swap(struct device *dev, struct lattice_halo *h, cl_event *most, struct timers *timers)
 {
-    bool shares_cores = dev->type & CL_DEVICE_TYPE_CPU;
-    if (shares_cores) check_cl(clWaitForEvents(1, &h->read_event)); /* the host sleeps while the device computes on its cores */
-    while (!device_event_done(h->read_event)) {
-        halo_poll(h->halo);
-        comm_pause(h->comm);
-    }
-    halo_begin_send(h->halo);
-    if (shares_cores) check_cl(clWaitForEvents(1, most));
-    check_cl(clReleaseEvent(*most));
-    timer_begin(timers, TIMER_EXCHANGE);
-    timer_begin(timers, TIMER_WAIT);
-    while (!halo_poll(h->halo)) comm_pause(h->comm);
-    timer_end(timers, TIMER_WAIT);
+    exchange_send(dev, h->halo, h->read_event, timers);
+    exchange_receive(dev, h->halo, most, timers);
     buffer_write_begin(dev, dev->copy, &h->arrived, 0, (size_t)h->n_recv * h->record, h->recv_staging.host, 0, NULL, &h->written_event);
     check_cl(clFlush(dev->copy));
     launch_run(h->unpack, dev->compute, h->n_recv, 1, &h->written_event, NULL);
-    release(&h->read_event);
-    release(&h->packed_event);
-    timer_end(timers, TIMER_EXCHANGE);
+    exchange_release(&h->read_event);
+    exchange_release(&h->packed_event);
 }

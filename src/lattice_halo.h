@@ -3,10 +3,9 @@
 #ifndef DEMOCLES_LATTICE_HALO_H
 #define DEMOCLES_LATTICE_HALO_H
 
-#include "../comm/halo.h"
+#include "exchange.h"
 #include "lattice_layout.h"
 #include "launch.h"
-#include "timer.h"
 
 struct lattice_halo {
     const struct comm *comm;
@@ -25,11 +24,9 @@ struct lattice_halo *lattice_halo_create(struct device *dev, const struct comm *
     const struct buffer *word);
 void lattice_halo_free(struct device *dev, struct lattice_halo *h);
 
-/* Packs from the sets of planes that begin with numbers x_in and v_in; posts receives. */
-void lattice_halo_begin(struct device *dev, struct lattice_halo *h, int64_t x_in, int64_t v_in);
-/* After the interior's kernels are enqueued. */
-void lattice_halo_read(struct device *dev, struct lattice_halo *h);
-/* Sends, waits for arrivals, enqueues what puts them in place. `most`: event of the larger part of the interior's kernels, released here. */
+/* Packs from the sets of planes that begin with numbers x_in and v_in, reads back, posts receives. */
+void lattice_halo_begin(struct device *dev, struct lattice_halo *h, int64_t x_in, int64_t v_in, struct timers *timers);
+/* After the interior's kernels are enqueued: sends, waits for arrivals, enqueues what puts them in place. `most`: see exchange_receive. */
 void lattice_halo_swap(struct device *dev, struct lattice_halo *h, cl_event *most, struct timers *timers);
 
 #endif

@@ -160,14 +160,17 @@ static int64_t number(const struct sim *s)
     return s->n_first;
 }
 
-/* Links whose lower cell this rank has. */
-static void count(const struct sim *s, int64_t *n_interaction, int64_t *halo_bytes)
+/* Interactions: links whose lower cell this rank has. */
+static void count(const struct sim *s, struct step_counts *counts)
 {
     const struct lattice *l = s->solid->lattice;
-    *n_interaction = 0;
+    *counts = (struct step_counts){0};
     for (int64_t i = 0; i < l->layout->n_owned; i++)
-        for (int face = 1; face < 6; face += 2) *n_interaction += s->solid->cells->bits[l->layout->gid[i]] >> face & 1;
-    *halo_bytes = l->halo ? l->halo->halo->bytes_sent : 0;
+        for (int face = 1; face < 6; face += 2) counts->n_interaction += s->solid->cells->bits[l->layout->gid[i]] >> face & 1;
+    if (!l->halo) return;
+    counts->sent = l->halo->halo->sent;
+    counts->n_neighbour = l->halo->halo->n_send;
+    counts->n_boundary = l->halo->n_send;
 }
 
 static void report_features(const struct sim *s, struct report *r)

@@ -26,10 +26,9 @@ void lattice_observed_refresh(struct lattice *l, bool with_pressure)
     lattice_rows_send(l, t, t, t);
     if (l->halo) {
         cl_event nothing = NULL;
-        lattice_halo_begin(l->dev, l->halo, x_at(l), v_at(l));
+        lattice_halo_begin(l->dev, l->halo, x_at(l), v_at(l), l->timers);
         launch_run(l->force, l->dev->compute, 0, 0, NULL, &nothing);
         device_flush(l->dev);
-        lattice_halo_read(l->dev, l->halo);
         lattice_halo_swap(l->dev, l->halo, &nothing, l->timers);
     }
     if (!with_pressure || !l->features.volume) return;

@@ -4,6 +4,7 @@
 #include "../kernels/lattice_words.h"
 #include "lattice_break.h"
 #include "lattice_observed.h"
+#include "trace.h"
 
 /* First number of a set of planes. */
 static int64_t x_at(const struct lattice *l, int set)
@@ -37,17 +38,20 @@ static void evaluate(struct lattice *l, int x_in, int x_out, int v_in, int v_out
     }
     if (l->halo) {
         int n_first = c->n_force_interior * 3 / 4;
-        lattice_halo_begin(l->dev, l->halo, x_at(l, x_in), v_at(l, v_in));
+        lattice_halo_begin(l->dev, l->halo, x_at(l, x_in), v_at(l, v_in), l->timers);
+        trace_part(l->dev->trace, "interior");
         if (l->features.volume) run(l, l->volume, 0, c->n_volume_interior, NULL);
         run(l, l->force, 0, n_first, &most);
         run(l, l->force, n_first, c->n_force_interior - n_first, NULL);
+        trace_part(l->dev->trace, NULL);
         device_flush(l->dev);
-        lattice_halo_read(l->dev, l->halo);
         lattice_halo_swap(l->dev, l->halo, &most, l->timers);
     }
     int n_volume = l->halo ? c->n_volume_interior : 0, n_force = l->halo ? c->n_force_interior : 0;
+    trace_part(l->dev->trace, "boundary");
     if (l->features.volume) run(l, l->volume, n_volume, c->n_volume - n_volume, NULL);
     run(l, l->force, n_force, c->n_force - n_force, NULL);
+    trace_part(l->dev->trace, NULL);
 }
 
 /* Breakage, from the state at the step's start, with the ghosts and pressures of the step's first evaluation where that is of this state. Links are

@@ -6,6 +6,7 @@
 
 #include "fail.h"
 #include "kernel_cache.h"
+#include "trace.h"
 
 /* Runs whose times are not yet known. */
 enum { MAX_PENDING = 64 };
@@ -268,7 +269,7 @@ void launch_run(struct launch *launch, cl_command_queue queue, int64_t n_item, c
     struct device *dev = launch->program->dev;
     struct profile *p = launch->profile;
     size_t n_group = ((size_t)n_item + launch->batch - 1) / launch->batch, global = launch_padded((int64_t)(n_group * launch->local), launch->local);
-    cl_event own, *done = event ? event : p ? &own : NULL;
+    cl_event own, *done = trace_event(dev->trace, event ? event : p ? &own : NULL);
 
     refresh(launch);
     bool compiles = dev->is_pocl && global > launch->largest;
@@ -282,6 +283,7 @@ void launch_run(struct launch *launch, cl_command_queue queue, int64_t n_item, c
     if (global > launch->largest) launch->largest = global;
     launch->n_run++;
     dev->counters.n_launch++;
+    trace_command(dev->trace, queue, launch->name, (size_t)n_item, done);
     if (p) {
         if (p->n == MAX_PENDING) harvest(launch);
         if (event) check_cl(clRetainEvent(*done));

@@ -22,7 +22,7 @@ static const struct command {
     [OPTIONS_EXPLAIN] = {"explain", "KEY", "the scene language: every key, or those of KEY (contacts.normal)", false},
 };
 
-enum { DIRECTORY, SET, FORCE, DEVICE, PRECISION, STEPS, MAX_TIME, QUIET, PROFILE, RESOLVED, RANKS, N_OPTION };
+enum { DIRECTORY, SET, FORCE, DEVICE, PRECISION, STEPS, MAX_TIME, QUIET, PROFILE, TRACE, TRACE_FROM, TRACE_LENGTH, RESOLVED, RANKS, N_OPTION };
 enum { RUN = 1 << OPTIONS_RUN, RESUME = 1 << OPTIONS_RESUME, CHECK = 1 << OPTIONS_CHECK, DEVICES = 1 << OPTIONS_DEVICES };
 
 static const struct option {
@@ -39,6 +39,9 @@ static const struct option {
     [MAX_TIME] = {"--max-time", "1h30m", "stop after this time on the clock, with exit code 75", RUN | RESUME},
     [QUIET] = {"--quiet", NULL, "nothing to the screen but errors and warnings", RUN | RESUME},
     [PROFILE] = {"--profile", NULL, "device time of each kernel into run.json, at a small price", RUN | RESUME},
+    [TRACE] = {"--trace", NULL, "a timeline of some steps into DIR/trace.json, for Perfetto or chrome://tracing", RUN | RESUME},
+    [TRACE_FROM] = {"--trace-from", "N", "that from step N on [about 100]", RUN | RESUME},
+    [TRACE_LENGTH] = {"--trace-steps", "N", "that of N steps [20]", RUN | RESUME},
     [RESOLVED] = {"--resolved", NULL, "print only the scene, with all defaults", CHECK},
     [RANKS] = {"--ranks", "N", "say what ranks 0 to N - 1 of a node take [those running]", DEVICES},
 };
@@ -123,6 +126,15 @@ static void store(struct options *o, int option, const char *value)
         break;
     case QUIET: o->run.quiet = true; break;
     case PROFILE: o->run.profile = true; break;
+    case TRACE: o->run.trace = true; break;
+    case TRACE_FROM:
+        o->run.trace = true;
+        o->run.trace_from = whole_number(o, option, value, 1, INT64_MAX);
+        break;
+    case TRACE_LENGTH:
+        o->run.trace = true;
+        o->run.trace_steps = whole_number(o, option, value, 1, TRACE_SPANS);
+        break;
     case RESOLVED: o->resolved = true; break;
     case RANKS: o->n_rank = (int)whole_number(o, option, value, 1, INT_MAX); break;
     }
@@ -163,7 +175,8 @@ static void parse_operand(struct options *o, const char *word)
 
 struct options options_parse(int argc, char **argv)
 {
-    struct options o = {.command = OPTIONS_NONE, .run = {.precision = PRECISION_DEFAULT, .n_step = -1, .max_time = HUGE_VAL}};
+    struct options o = {.command = OPTIONS_NONE,
+        .run = {.precision = PRECISION_DEFAULT, .n_step = -1, .max_time = HUGE_VAL, .trace_from = -1, .trace_steps = TRACE_STEPS}};
     o.set = fail_alloc((size_t)(argc + 1) * sizeof *o.set);
     if (argc < 2) o.error = fail_strdup("a command is missing; see `democles --help`");
     else parse_command(&o, argv[1]);

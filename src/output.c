@@ -73,6 +73,8 @@ bool output_due(const struct sim *s, int64_t step)
 void output_write(struct sim *s, bool last)
 {
     struct outputs *out = s->output;
+    const struct timers before = s->timers;
+    trace_lap(s->dev->trace, NULL);
     timer_begin(&s->timers, TIMER_OUTPUT);
     measures_write(s, out->measures);
     if ((last || frame_due(s, s->step)) && out->frame_step != s->step) {
@@ -81,6 +83,9 @@ void output_write(struct sim *s, bool last)
         out->frame_step = s->step;
     }
     timer_end(&s->timers, TIMER_OUTPUT);
+    s->timers.total[TIMER_EXCHANGE] = before.total[TIMER_EXCHANGE]; /* what the output exchanges is the output's */
+    s->timers.total[TIMER_WAIT] = before.total[TIMER_WAIT];
+    trace_lap(s->dev->trace, "output");
 }
 
 /* The clock is read at every step, the folder is looked at twice a second. */
@@ -104,6 +109,7 @@ _Noreturn void output_stop_numerics(struct sim *s, const char *what, ...)
     vsnprintf(text, sizeof text, what, args);
     va_end(args);
     measures_flush(s->output->measures);
+    trace_step(s->trace, -1);
     record_write(s, EXIT_NUMERICS, false);
     fail_stop_together(EXIT_NUMERICS, "step %lld, t = %.9g s: %s", (long long)s->step, (double)s->step * s->dt, text);
 }

@@ -42,7 +42,7 @@ void particle_measure(struct sim *s, const bool *due, double (*value)[MEASURE_CO
 /* An element has left the run at x [m]: counts whose region holds the place go on counting it. Not collective. */
 void particle_left(struct sim *s, const double x[3]);
 bool particle_digest(struct sim *s, uint64_t *digest);
-void particle_count(const struct sim *s, int64_t *n_interaction, int64_t *halo_bytes);
+void particle_count(const struct sim *s, struct step_counts *counts);
 void particle_report_features(const struct sim *s, struct report *r);
 void particle_report_energy(struct sim *s, struct report *r, bool observed);
 void particle_report_kernels(const struct sim *s, struct report *r);

@@ -40,10 +40,10 @@ int64_t particle_number(const struct sim *s)
     return s->particles->n_global;
 }
 
-void particle_count(const struct sim *s, int64_t *n_interaction, int64_t *halo_bytes)
+void particle_count(const struct sim *s, struct step_counts *counts)
 {
-    *n_interaction = s->pairs->now.n_own;
-    *halo_bytes = ghosts_bytes_sent(s->ghosts);
+    const struct halo *halo = s->ghosts->halo;
+    *counts = (struct step_counts){s->pairs->now.n_own, ghosts_sent(s->ghosts), halo ? halo->n_send : 0, s->ghosts->n_send};
 }
 
 void particle_report_features(const struct sim *s, struct report *r)

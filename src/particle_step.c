@@ -9,6 +9,7 @@
 #include "../kernels/batch.h"
 #include "output.h"
 #include "signals.h"
+#include "trace.h"
 
 static void launch_pairs(struct sim *s, int64_t first, int64_t n, const cl_event *wait, cl_event *done)
 {
@@ -24,8 +25,10 @@ static void launch_pairs(struct sim *s, int64_t first, int64_t n, const cl_event
 static void launch_interior(struct sim *s, cl_event *most)
 {
     int64_t n = s->pairs->now.n_interior, n_first = s->comm->n_rank > 1 ? n * 3 / 4 / BATCH * BATCH : n;
+    trace_part(s->dev->trace, "interior");
     launch_pairs(s, 0, n_first, NULL, s->comm->n_rank > 1 ? most : NULL);
     launch_pairs(s, n_first, n - n_first, NULL, NULL);
+    trace_part(s->dev->trace, NULL);
 }
 
 static void launch_walls(struct sim *s)
@@ -42,15 +45,14 @@ void particle_forces(struct sim *s)
     const struct pair_list *l = &s->pairs->now;
     cl_event most = NULL;
     if (s->wall_contacts) wall_contacts_set_step(s->dev, s->wall_contacts, s->step);
-    timer_begin(&s->timers, TIMER_EXCHANGE);
-    ghosts_begin(s->dev, s->ghosts, s->particles);
-    timer_end(&s->timers, TIMER_EXCHANGE);
+    ghosts_begin(s->dev, s->ghosts, s->particles, &s->timers);
     launch_interior(s, &most);
     launch_walls(s);
     device_flush(s->dev);
-    ghosts_read(s->dev, s->ghosts);
     const cl_event *arrived = ghosts_swap(s->dev, s->ghosts, s->particles, &most, &s->timers);
+    trace_part(s->dev->trace, "boundary");
     launch_pairs(s, l->first_boundary, l->n_boundary, arrived, NULL);
+    trace_part(s->dev->trace, NULL);
 }
 
 /* After the drift to the next step. */

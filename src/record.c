@@ -37,8 +37,11 @@ static void add_devices(struct report *r, const struct sim *s)
 static void add_scale(struct report *r, struct sim *s)
 {
     double loop = s->timers.total[TIMER_LOOP];
-    int64_t sum[3] = {0, 0, s->dev->counters.peak_bytes};
-    s->ops->count(s, &sum[0], &sum[1]);
+    struct step_counts mine;
+    s->ops->count(s, &mine);
+    mine.sent.bytes -= s->sent_before.bytes;
+    mine.sent.messages -= s->sent_before.messages;
+    int64_t sum[3] = {mine.n_interaction, mine.sent.bytes, s->dev->counters.peak_bytes};
     comm_sum_i64(s->comm, sum, 3);
     report_integer(r, "elements", s->n_first);
     report_integer(r, "elements_left", s->n_removed);
@@ -61,7 +64,14 @@ static void add_scale(struct report *r, struct sim *s)
     report_number(r, "mean", s->n_imbalance ? s->imbalance_sum / (double)s->n_imbalance : 0);
     report_number(r, "max", s->imbalance_max);
     report_end(r);
-    report_number(r, "halo_bytes_per_step", s->step > s->begun_at ? (double)sum[1] / (double)(s->step - s->begun_at) : 0);
+    double n = s->step > s->begun_at ? (double)(s->step - s->begun_at) : 1;
+    report_number(r, "halo_bytes_per_step", (double)sum[1] / n);
+    report_begin(r, "exchange"); /* of each rank; bytes and messages that it sends per step */
+    report_spread(r, "bytes", s->comm, (double)mine.sent.bytes / n);
+    report_spread(r, "messages", s->comm, (double)mine.sent.messages / n);
+    report_spread(r, "neighbours", s->comm, mine.n_neighbour);
+    report_spread(r, "elements", s->comm, (double)mine.n_boundary);
+    report_end(r);
     report_number(r, "device_bytes_per_element", (double)sum[2] / (double)(s->n_first > 0 ? s->n_first : 1));
 }
 

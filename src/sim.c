@@ -78,7 +78,8 @@ struct sim *sim_create(struct scene *scene, struct comm *comm, struct log *log, 
     s->ops->plan(s);
     if (s->from) resume_check_inputs(s);
     count_steps(s);
-    s->dev = device_open(comm, options->device, !s->features.real_is_float || !s->features.position_is_float, options->profile);
+    s->dev = device_open(comm, options->device, !s->features.real_is_float || !s->features.position_is_float, options->profile || options->trace);
+    s->dev->profile = options->profile; /* a trace wants the queues' times alone */
     share_cores(s);
     s->output = output_create(s);
     s->dev->dump_dir = options->dir;
@@ -90,6 +91,7 @@ struct sim *sim_create(struct scene *scene, struct comm *comm, struct log *log, 
         (long long)s->n_step);
     s->ops->warn(s);
     print_memory(s);
+    if (options->trace) s->trace = trace_create(comm, s->dev, options->dir, options->trace_from, options->trace_steps, s->n_step);
     timer_end(&s->timers, TIMER_SETUP);
     return s;
 }
@@ -104,13 +106,20 @@ static void progress(struct sim *s, bool end)
 /* Lists, lost elements and requests, as agreed beside the step before. Returns whether this step is to be the last. */
 static bool look_around(struct sim *s)
 {
+    trace_lap(s->dev->trace, NULL);
+    timer_begin(&s->timers, TIMER_EXCHANGE);
+    timer_begin(&s->timers, TIMER_WAIT);
     int32_t agreed = watch_agreed(&s->watch, s->comm);
+    timer_end(&s->timers, TIMER_WAIT);
+    timer_end(&s->timers, TIMER_EXCHANGE);
+    trace_lap(s->dev->trace, "vote");
     if (agreed & WATCH_LOST) output_stop_numerics(s, "positions or velocities are not numbers any more");
     if (agreed & WATCH_STALE || s->ops->stale(s)) {
         timer_begin(&s->timers, TIMER_REGROUP);
         s->ops->regroup(s);
         signals_keep(); /* kernels that ran for the first time may have been compiled */
         timer_end(&s->timers, TIMER_REGROUP);
+        trace_lap(s->dev->trace, "regroup");
     }
     return (agreed & WATCH_STOP) != 0;
 }
@@ -126,6 +135,15 @@ static void count_plain(struct sim *s, const struct device_counters *before)
     s->plain.n_d2h += now->n_d2h - before->n_d2h;
     s->plain.d2h_bytes += now->d2h_bytes - before->d2h_bytes;
     s->plain.n_launch += now->n_launch - before->n_launch;
+}
+
+/* Looking at clocks and writing the trace are output. */
+static void trace(struct sim *s, int64_t step)
+{
+    if (!s->trace) return;
+    timer_begin(&s->timers, TIMER_OUTPUT);
+    trace_step(s->trace, step);
+    timer_end(&s->timers, TIMER_OUTPUT);
 }
 
 /* Returns the exit code. Who asks for rest and gets none by the scene's end has no result. */
@@ -149,9 +167,13 @@ int sim_run(struct sim *s)
     signals_keep();
     double *total = s->timers.total;
     total[TIMER_EXCHANGE] = total[TIMER_WAIT] = total[TIMER_REGROUP] = 0; /* the set-up's belong to TIMER_SETUP */
+    struct step_counts counts;
+    s->ops->count(s, &counts);
+    s->sent_before = counts.sent;
     timer_begin(&s->timers, TIMER_LOOP);
     if (!s->from) output_write(s, s->n_step == 0);
     while (s->step < s->n_step && !stop && !s->rest.reached) {
+        trace(s, s->step + 1);
         const struct device_counters before = s->dev->counters;
         int64_t n_rebuild = s->n_rebuild;
         bool plain = s->step > 0 && !s->observed;
@@ -172,6 +194,7 @@ int sim_run(struct sim *s)
         }
         progress(s, false);
     }
+    trace(s, -1);
     device_finish(s->dev);
     timer_end(&s->timers, TIMER_LOOP);
     total[TIMER_LOOP] -= total[TIMER_OUTPUT];
@@ -185,6 +208,7 @@ void sim_free(struct sim *s)
     if (!s) return;
     s->ops->free(s);
     output_free(s->output);
+    trace_free(s->trace);
     device_free(s->dev);
     free(s);
 }

@@ -11,17 +11,20 @@
 #include "owners.h"
 #include "step.h"
 #include "timer.h"
+#include "trace.h"
 #include "watch.h"
 
 /* From the command line. */
 struct sim_options {
-    const char *dir;            /* results */
-    bool force, quiet, profile; /* profile: device time of every kernel into run.json, at a small price */
-    const char *device;         /* NULL: best */
-    enum precision precision;   /* PRECISION_DEFAULT: the scene's */
-    int64_t n_step;             /* last step, -1: from the scene's end */
-    double max_time;            /* [s] of wall time; infinity: none */
-    struct resume *from;        /* frame in `dir` to go on from; NULL: from the start */
+    const char *dir;                 /* results */
+    bool force, quiet, profile;      /* profile: device time of every kernel into run.json, at a small price */
+    bool trace;                      /* a timeline: trace.h */
+    int64_t trace_from, trace_steps; /* -1: as trace_create wants; how many */
+    const char *device;              /* NULL: best */
+    enum precision precision;        /* PRECISION_DEFAULT: the scene's */
+    int64_t n_step;                  /* last step, -1: from the scene's end */
+    double max_time;                 /* [s] of wall time; infinity: none */
+    struct resume *from;             /* frame in `dir` to go on from; NULL: from the start */
 };
 
 struct sim {
@@ -73,6 +76,7 @@ struct sim {
     } rest;
     struct watch watch;
     struct timers timers;
+    struct trace *trace; /* NULL: none */
     struct outputs *output;
 
     /* account of the run */
@@ -84,7 +88,8 @@ struct sim {
     double element_steps;         /* elements times steps so far */
     struct device_counters plain; /* what the plain steps added: those without regroup, observation or the step after one */
     int64_t n_plain;
-    double started; /* timer_now at the start */
+    struct halo_traffic sent_before; /* by this rank before the first step */
+    double started;                  /* timer_now at the start */
 };
 
 /* Reads nothing: the scene is there. Opens the device, builds kernels, makes elements, lists and output. Collective; errors stop all ranks. */

@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "../comm/halo.h"
 #include "scene.h"
 #include "series.h"
 
@@ -12,6 +13,14 @@ enum { MEASURE_COLUMNS = 16 }; /* most, besides the time */
 
 struct report;
 struct sim;
+
+/* Of one rank. */
+struct step_counts {
+    int64_t n_interaction;
+    struct halo_traffic sent; /* within steps, since the start */
+    int n_neighbour;          /* ranks that it sends to, now */
+    int64_t n_boundary;       /* elements that it sends them, now; one that two need counts twice */
+};
 
 struct step_ops {
     const char *name;
@@ -38,7 +47,7 @@ struct step_ops {
     bool (*digest)(struct sim *s, uint64_t *digest);                                     /* false: NaN in the state */
 
     /* The record. */
-    void (*count)(const struct sim *s, int64_t *n_interaction, int64_t *halo_bytes); /* of this rank; not collective */
+    void (*count)(const struct sim *s, struct step_counts *counts); /* of this rank; not collective */
     void (*report_features)(const struct sim *s, struct report *r);
     void (*report_energy)(struct sim *s, struct report *r, bool observed); /* observed: the state is that of a full step. Collective */
     void (*report_kernels)(const struct sim *s, struct report *r);         /* device time and number of launches, this rank's */

@@ -7,9 +7,9 @@
 enum timer_name {
     TIMER_SETUP,    /* from the start to the first step */
     TIMER_LOOP,     /* all steps, output left out */
-    TIMER_COMPUTE,  /* enqueueing kernels and waiting for the device */
-    TIMER_EXCHANGE, /* halo: posting, messages, arrival; not the kernels that run under it */
-    TIMER_WAIT,     /* of that, waiting for other ranks */
+    TIMER_COMPUTE,  /* what is left of the loop: enqueueing kernels and waiting for the own device */
+    TIMER_EXCHANGE, /* halo: posting, messages, arrival; votes; not the kernels that run under it */
+    TIMER_WAIT,     /* of that, waiting for other ranks, also while the device has work left: at most so much is lost */
     TIMER_REGROUP,  /* owners, migration, lists */
     TIMER_OUTPUT,   /* frames, measures */
     TIMER_N

@@ -103,7 +103,6 @@ static void one_kind(const struct comm *comm, int kind, int n_round)
             fill(halo, aside, 1000 + round);
             halo_exchange(halo, aside, once, sizeof *aside);
             check(halo, once, 1000 + round);
-            sent += n_send * (int64_t)sizeof *send;
         }
         fill(halo, send, round);
         halo_begin_send(halo);
@@ -113,7 +112,7 @@ static void one_kind(const struct comm *comm, int kind, int n_round)
         halo_end(halo);
         sent += n_send * (int64_t)sizeof *send;
     }
-    CHECK(halo->bytes_sent == sent + n_send * (int64_t)sizeof *send);
+    CHECK(halo->sent.bytes == sent && halo->sent.messages == (int64_t)n_round * halo->n_send);
 
     halo_bind(halo, send, recv, sizeof(int64_t)); /* other size over the same buffers */
     for (int64_t i = 0; i < n_send; i++) ((int64_t *)send)[i] = gid_of(comm->rank, 0, i);

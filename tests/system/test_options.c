@@ -71,6 +71,7 @@ static void refuses_values(void **state)
     refuses("run a.yaml --steps +-1", "--steps '+-1': expected a whole number, at least 0");
     refuses("run a.yaml --steps 99999999999999999999", "--steps '99999999999999999999': expected a whole number, at least 0");
     refuses("devices --ranks 0", "--ranks '0': expected a whole number, at least 1");
+    refuses("run a.yaml --trace-steps 0", "--trace-steps '0': expected a whole number, at least 1");
     refuses("run a.yaml --max-time 1h30", "--max-time '1h30': expected a time like 1h30m, 90s or 3600");
     refuses("run a.yaml --precision singel", "--precision 'singel': did you mean 'single'?");
     refuses("run a.yaml --precision half", "--precision 'half': expected double, mixed or single");
@@ -108,7 +109,23 @@ static void defaults_of_run(void **state)
     assert_null(o.run.device);
     assert_true(!o.run.force && !o.run.quiet && o.n_set == 0);
     assert_int_equal(o.run.n_step, -1);
+    assert_false(o.run.trace);
     assert_true(isinf(o.run.max_time));
+    options_free(&o);
+}
+
+static void traces(void **state)
+{
+    (void)state;
+    char plain[] = "run s.yaml --trace", from[] = "run s.yaml --trace-from 7", length[] = "run s.yaml --trace-steps=3";
+    struct options o = parse(plain);
+    assert_true(!o.error && o.run.trace && o.run.trace_from == -1 && o.run.trace_steps == TRACE_STEPS);
+    options_free(&o);
+    o = parse(from);
+    assert_true(!o.error && o.run.trace && o.run.trace_from == 7 && o.run.trace_steps == TRACE_STEPS);
+    options_free(&o);
+    o = parse(length);
+    assert_true(!o.error && o.run.trace && o.run.trace_from == -1 && o.run.trace_steps == 3);
     options_free(&o);
 }
 
@@ -186,7 +203,7 @@ static void help_offers_what_is_known(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(refuses_with_the_nearest_word), cmocka_unit_test(refuses_values),
-        cmocka_unit_test(takes_all_of_run), cmocka_unit_test(defaults_of_run), cmocka_unit_test(takes_other_commands),
+        cmocka_unit_test(takes_all_of_run), cmocka_unit_test(defaults_of_run), cmocka_unit_test(traces), cmocka_unit_test(takes_other_commands),
         cmocka_unit_test(help_offers_what_is_known)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,89 @@
+"""What the studies of runs on many ranks share: a run, what its record says, tables."""
+import csv
+import json
+import os
+import pathlib
+import subprocess
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PARTS = ("compute", "exchange", "wait", "regroup")  # of the loop's time, disjoint here: exchange without wait
+
+# Speed-up and efficiency [%] as the seed report prints them (VEDO and Iris, National Taiwan University; base: one processor).
+SEED_SOURCE = "seed report (VEDO and Iris, National Taiwan University), tables of cases A and B, geometric and graph partitioning"
+SEED = {
+    "v_funnel": {"geometric": {4: (3.76, 94.09), 8: (6.59, 82.33), 16: (9.16, 57.24)},
+                 "graph": {4: (3.77, 94.14), 8: (6.10, 76.24), 16: (7.66, 47.91)}},
+    "l_box": {"geometric": {4: (3.60, 90.09), 8: (6.24, 78.05), 16: (8.25, 51.55)},
+              "graph": {4: (3.39, 84.73), 8: (5.73, 71.61), 16: (6.76, 42.27)}}}
+
+
+def cores():
+    """That this process may use."""
+    return len(os.sched_getaffinity(0))
+
+
+def numbers(text):
+    """[1, 2, 4] from "1,2,4"."""
+    return [int(word) for word in text.split(",")]
+
+
+def run(program, scene, folder, ranks, *args):
+    """Runs, replacing what is in the folder; returns exit code and stderr."""
+    env = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_btl_vader_single_copy_mechanism": "none"}
+    command = [str(program), "run", str(scene), "-o", str(folder), "--force", "--quiet", *args]
+    if ranks > 1:
+        command = ["mpirun", "-n", str(ranks), "--oversubscribe", "--bind-to", "none", "--mca", "mpi_yield_when_idle", "1", *command]
+    done = subprocess.run(command, env=env, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False)
+    return done.returncode, done.stderr
+
+
+class Record:
+    """run.json of a folder, or the file itself; or its content."""
+
+    def __init__(self, given):
+        if not isinstance(given, dict):
+            path = pathlib.Path(given)
+            given = json.loads((path / "run.json" if path.is_dir() else path).read_text())
+        self.raw = given
+        self.ranks, self.steps, self.elements = given["ranks"], given["steps"], given["elements"]
+        self.loop, self.digest = given["wall_s"]["loop"], given["digest"]
+
+    def of(self, *keys, default=None):
+        """A value deep in the record."""
+        value = self.raw
+        for key in keys:
+            if not isinstance(value, dict) or key not in value:
+                return default
+            value = value[key]
+        return value
+
+    def per_step(self, part):
+        """Mean over ranks of a timer [s]; exchange without wait."""
+        timers = self.raw["timers"]
+        seconds = timers[part]["mean"] - (timers["wait"]["mean"] if part == "exchange" else 0)
+        return seconds / max(self.steps, 1)
+
+    def shares(self):
+        """Of the loop's time [%], means over ranks."""
+        return [100 * self.per_step(part) * self.steps / self.loop for part in PARTS] if self.loop > 0 else [0.0] * len(PARTS)
+
+    def imbalance(self):
+        """U, mean over the run."""
+        return self.of("imbalance", "mean", default=0.0)
+
+    def cut(self):
+        """Interactions that a border cuts; None: this version does not say."""
+        return self.of("partition", "cut")
+
+
+def write_table(path, titles, rows, notes=()):
+    """path.md and path.csv; prints the former. Cells: text, numbers, or None for what is not known."""
+    def shown(cell):
+        return "" if cell is None else cell if isinstance(cell, str) else f"{cell:.4g}" if isinstance(cell, float) else str(cell)
+    lines = ["| " + " | ".join(titles) + " |", "|" + "---|" * len(titles)]
+    lines += ["| " + " | ".join(map(shown, row)) + " |" for row in rows]
+    text = "\n".join(lines + [""] + list(notes)) + "\n"
+    path.with_suffix(".md").write_text(text)
+    with open(path.with_suffix(".csv"), "w", newline="") as file:
+        csv.writer(file).writerows([titles, *([None if c is None else c for c in row] for row in rows)])
+    print(text, end="")
