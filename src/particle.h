@@ -1,5 +1,5 @@
-/* The parts of the particle method, by file: particle_input.c, particle_setup.c, particle_regroup.c, particle_step.c, particle_limit.c,
- * particle_frame.c, particle_measures.c, particle_report.c. What step.h describes is not described again. */
+/* The parts of the particle method, by file: particle_input.c, particle_setup.c, particle_cut.c, particle_regroup.c, particle_step.c,
+ * particle_limit.c, particle_frame.c, particle_measures.c, particle_report.c. What step.h describes is not described again. */
 #ifndef DEMOCLES_PARTICLE_H
 #define DEMOCLES_PARTICLE_H
 
@@ -13,6 +13,8 @@ void particle_warn(struct sim *s);
 void particle_free(struct sim *s);
 /* New owners, ghosts and lists, histories carried over. Collective. */
 void particle_regroup(struct sim *s);
+/* A new tree of cuts by the scene's method; elements have not moved yet. Collective. */
+void particle_cut(struct sim *s);
 /* Ghosts, lists and everything that depends on their sizes, for owned elements that are in place. Collective. */
 void particle_build(struct sim *s);
 /* Forces of pairs and walls at the present step, into the result records. */
@@ -30,6 +32,7 @@ double particle_limit_dense(const struct sim *s);
 void particle_check_limit(struct sim *s);
 
 int64_t particle_number(const struct sim *s);
+int64_t particle_owned(const struct sim *s);
 void particle_frame(struct sim *s, int64_t index);
 int particle_measure_columns(enum measure_kind kind, const struct series_column **column);
 void particle_measure(struct sim *s, const bool *due, double (*value)[MEASURE_COLUMNS]);

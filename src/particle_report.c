@@ -40,6 +40,11 @@ int64_t particle_number(const struct sim *s)
     return s->particles->n_global;
 }
 
+int64_t particle_owned(const struct sim *s)
+{
+    return s->particles->n_owned;
+}
+
 void particle_count(const struct sim *s, int64_t *n_interaction, int64_t *halo_bytes)
 {
     *n_interaction = s->pairs->now.n_own;

@@ -123,7 +123,7 @@ void particle_bind(struct sim *s)
     launch_set_int(s->wall_force, "capacity", (int)w->now.capacity);
 }
 
-/* Every rank has all elements and takes its own. */
+/* Every rank has all elements and takes its own: by place alone, for nothing is known yet of interactions. */
 static void distribute(struct sim *s)
 {
     const struct elements_host *e = s->first;
@@ -132,7 +132,7 @@ static void distribute(struct sim *s)
     if (n < 0) n = 0;
     int64_t *weight = fail_alloc((size_t)n * sizeof *weight);
     for (int64_t i = 0; i < n; i++) weight[i] = 1;
-    s->rcb = rcb_create(s->comm, n > 0 ? e->x + 3 * begin : e->x, weight, n);
+    s->rcb = rcb_create(s->comm, s->comm->n_rank, NULL, n > 0 ? e->x + 3 * begin : e->x, weight, n);
     owners_set_tree(s->dev, s->owners, s->rcb);
     unsigned char *take = fail_alloc((size_t)e->n);
     for (int64_t i = 0; i < e->n; i++) take[i] = rcb_owner(s->rcb, e->x + 3 * i) == s->comm->rank;
@@ -183,8 +183,10 @@ void particle_setup(struct sim *s)
     particle_build(s);
     particle_bind(s);
     s->limit = limit_create(s);
-    particle_regroup(s); /* once for nothing: its kernels are compiled before the clock runs, and what starts outside leaves at once */
+    if (s->comm->n_rank > 1) particle_cut(s); /* now that interactions are known */
+    particle_regroup(s);                      /* its kernels are compiled before the clock runs, and what starts outside leaves at once */
     s->n_rebuild = 0;
+    balance_restart(s->balance);
     first_forces(s);
     energy_now(s, &s->energy_start);
 }

@@ -54,11 +54,12 @@ static void add_scale(struct report *r, struct sim *s)
     report_number(r, "element_steps_per_s", loop > 0 ? s->element_steps / loop : 0);
     report_timers(r, "timers", s->comm, &s->timers);
     report_integer(r, "rebuilds", s->n_rebuild);
-    report_integer(r, "repartitions", s->n_repartition);
-    report_integer(r, "migrations", s->n_moved);
+    const struct partition_quality *q = &s->balance->quality;
+    report_integer(r, "repartitions", s->balance->n_deal);
+    report_integer(r, "migrations", s->balance->n_moved);
     report_begin(r, "imbalance");
-    report_number(r, "mean", s->n_imbalance ? s->imbalance_sum / (double)s->n_imbalance : 0);
-    report_number(r, "max", s->imbalance_max);
+    report_number(r, "mean", q->n > 0 ? q->imbalance_sum / (double)q->n : 0);
+    report_number(r, "max", q->imbalance_max);
     report_end(r);
     report_number(r, "halo_bytes_per_step", s->step > 0 ? (double)sum[1] / (double)s->step : 0);
     report_number(r, "device_bytes_per_element", (double)sum[2] / (double)(s->n_first > 0 ? s->n_first : 1));
@@ -105,7 +106,7 @@ bool record_write(struct sim *s, int exit_code, bool observed)
     report_text(r, "scheme", lattice_schemes_table((enum lattice_scheme)s->scene->time.scheme)->name); /* particles: leapfrog */
     report_integer(r, "ranks", s->comm->n_rank);
     add_devices(r, s);
-    report_text(r, "partition", "geometric");
+    balance_report(s->balance, r, &s->timers, s->step, s->ops->n_owned(s));
     report_begin(r, "features");
     s->ops->report_features(s, r);
     report_end(r);

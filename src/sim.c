@@ -54,6 +54,7 @@ struct sim *sim_create(struct scene *scene, struct comm *comm, struct log *log, 
     s->ops = scene->method == METHOD_LATTICE ? &lattice_ops : &particle_ops;
     s->started = timer_now();
     s->rest.left = (double)NAN;
+    s->balance = balance_create(comm, &scene->partition);
     timer_begin(&s->timers, TIMER_SETUP);
     s->ops->read(s);
     s->ops->plan(s);
@@ -84,7 +85,11 @@ static void progress(struct sim *s, bool end)
 /* Lists, lost elements and requests, as agreed beside the step before. Returns whether this step is to be the last. */
 static bool look_around(struct sim *s)
 {
+    timer_begin(&s->timers, TIMER_EXCHANGE);
+    timer_begin(&s->timers, TIMER_WAIT);
     int32_t agreed = watch_agreed(&s->watch, s->comm);
+    timer_end(&s->timers, TIMER_WAIT);
+    timer_end(&s->timers, TIMER_EXCHANGE);
     if (agreed & WATCH_LOST) output_stop_numerics(s, "positions or velocities are not numbers any more");
     if (agreed & WATCH_STALE || s->ops->stale(s)) {
         timer_begin(&s->timers, TIMER_REGROUP);
@@ -126,6 +131,7 @@ int sim_run(struct sim *s)
 {
     bool stop = false;
     signals_keep();
+    signals_pass();
     double *total = s->timers.total;
     total[TIMER_EXCHANGE] = total[TIMER_WAIT] = total[TIMER_REGROUP] = 0; /* the set-up's belong to TIMER_SETUP */
     timer_begin(&s->timers, TIMER_LOOP);
@@ -164,6 +170,7 @@ void sim_free(struct sim *s)
     if (!s) return;
     s->ops->free(s);
     output_free(s->output);
+    balance_free(s->balance);
     device_free(s->dev);
     free(s);
 }
