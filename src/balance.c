@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "fail.h"
+#include "log.h"
 #include "report.h"
 
 /* Shares of one sum; none is smaller than a 64th of the mean, so that every rank has work to be measured by. */
@@ -140,6 +141,17 @@ void balance_restart(struct balance *b)
     balance_add(b, b->part);
 }
 
+static const char *const method_name[] = {"geometric", "interactions", "graph"};
+
+void balance_print(const struct balance *b, struct log *log)
+{
+    const struct partition_quality *q = &b->quality;
+    double n = q->n > 0 ? (double)q->n : 1;
+    if (b->comm->n_rank == 1) return;
+    log_print(log, "partition %s: imbalance %.3g on average, %.3g at most; %.3g neighbours; %lld repartitions, %lld elements moved",
+        method_name[b->scene->method], q->imbalance_sum / n, q->imbalance_max, q->neighbours_sum / n, (long long)b->n_deal, (long long)b->n_moved);
+}
+
 static void report_ranks(const struct balance *b, struct report *r, double busy, int64_t n_element)
 {
     struct {
@@ -165,11 +177,11 @@ static void report_ranks(const struct balance *b, struct report *r, double busy,
 void balance_report(const struct balance *b, struct report *r, const struct timers *timers, int64_t n_step, int64_t n_element)
 {
     double steps = timers->total[TIMER_LOOP] - timers->total[TIMER_REGROUP], step = n_step > 0 ? steps / (double)n_step : 0;
-    static const char *const method[] = {"geometric", "interactions", "graph"}, *const weights[] = {"interactions", "measured"};
+    static const char *const weights[] = {"interactions", "measured"};
     const struct partition_quality *q = &b->quality;
     double n = q->n > 0 ? (double)q->n : 1, cost = b->n_deal > 0 ? b->cost_sum / (double)b->n_deal : 0;
     report_begin(r, "partition");
-    report_text(r, "method", method[b->scene->method]);
+    report_text(r, "method", method_name[b->scene->method]);
     report_text(r, "weights", weights[b->scene->weights]);
     report_number(r, "cut", q->cut_sum / n);
     report_begin(r, "neighbours");

@@ -8,6 +8,7 @@
 #include "scene.h"
 #include "timer.h"
 
+struct log;
 struct report;
 
 struct balance {
@@ -48,7 +49,8 @@ void balance_go_on(struct balance *b, const struct timers *timers, int64_t step)
 /* What the set-up did does not count, but for the parts as they are now. */
 void balance_restart(struct balance *b);
 
-/* Key `partition`. timers of a run of n_step steps that is over; n_element: of this rank. Collective. */
+/* A line for the log and key `partition`. timers of a run of n_step steps that is over; n_element: of this rank. Collective. */
+void balance_print(const struct balance *b, struct log *log);
 void balance_report(const struct balance *b, struct report *r, const struct timers *timers, int64_t n_step, int64_t n_element);
 
 #endif

@@ -15,9 +15,6 @@ static double side_counts(int axis, int run_axis)
     return axis == run_axis ? 0.5 : axis == last ? 1 : 0.99;
 }
 
-/* Leaves per rank of the fine tree that METIS deals out. */
-enum { LEAVES = 64 };
-
 static int64_t work_of(const struct lattice_cells *cells, int64_t i)
 {
     return 1 + __builtin_popcount(cells->bits[i] & CELL_LINKS);
@@ -85,11 +82,9 @@ int *lattice_owners(const struct comm *comm, const struct lattice_cells *cells, 
     enum partition_method method = options->partition.method;
     double(*x)[3] = places(cells, run_axis);
     int *owner = fail_alloc((size_t)cells->n * sizeof *owner);
-    int64_t most = (int64_t)LEAVES * comm->n_rank;
     struct rcb *tree;
     if (method == PARTITION_GRAPH && comm->n_rank > 1) {
-        int n_leaf = (int)(cells->n >= most ? most : cells->n > comm->n_rank ? cells->n : comm->n_rank);
-        tree = cut(comm, cells, x, run_axis, n_leaf, NULL, false);
+        tree = cut(comm, cells, x, run_axis, graph_leaves_wanted(comm, cells->n), NULL, false);
         deal(comm, cells, options, tree, x);
     } else {
         tree = cut(comm, cells, x, run_axis, comm->n_rank, options->share, method == PARTITION_INTERACTIONS);

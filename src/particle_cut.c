@@ -14,8 +14,6 @@
 #include "../partition/graph.h"
 #include "fail.h"
 
-/* Leaves per rank of the fine tree. */
-enum { LEAVES = 64 };
 /* Cuts with raised weights, and how finely weights are kept meanwhile. */
 enum { ROUNDS = 4, FINE = 16 };
 
@@ -165,8 +163,7 @@ static struct rcb *cut_points(struct sim *s, const struct view *v)
 
 static struct rcb *cut_graph(struct sim *s, const struct view *v)
 {
-    int64_t most = (int64_t)LEAVES * s->comm->n_rank, n_element = s->particles->n_global;
-    int n_leaf = (int)(n_element >= most ? most : n_element > s->comm->n_rank ? n_element : s->comm->n_rank);
+    int n_leaf = graph_leaves_wanted(s->comm, s->particles->n_global);
     struct rcb *tree = rcb_create(s->comm, n_leaf, NULL, (const double *)v->x, v->weight, v->n);
     int *leaf = owners(v, tree), *owner = fail_alloc((size_t)n_leaf * sizeof *owner);
     struct graph_elements elements = {v->n, v->weight, v->begin, v->row, leaf, true};

@@ -126,6 +126,7 @@ bool record_write(struct sim *s, int exit_code, bool observed)
         double loop = s->timers.total[TIMER_LOOP];
         log_print(s->log, "%lld steps of %lld elements in %.2f s: %.3g million element steps per second", (long long)s->step, (long long)s->n_first,
             loop, loop > 0 ? s->element_steps / loop * 1e-6 : 0);
+        balance_print(s->balance, s->log);
         log_print(s->log, "digest %s", whole ? digest : "none: the state holds NaN");
     }
     report_free(r);

@@ -6,7 +6,7 @@
 #include "graph.h"
 #include "partition.h"
 
-enum { SIDE = 24, N = SIDE * SIDE * SIDE, LEAVES = 64 };
+enum { SIDE = 24, N = SIDE * SIDE * SIDE };
 
 static double x[N][3];
 static int begin[N + 1], to[6 * N], leaf[N];
@@ -41,16 +41,23 @@ static int make(int first, int stride)
     return n;
 }
 
-/* Deals the grid out and checks that every rank gets its share of the work, pairs of two ranks counted on both. */
-static void deal(const struct comm *comm, int stride, const int64_t *share, double threshold, double accepted)
+/* Deals the grid out and checks that every rank gets its share of the work, pairs of two ranks counted on both, within one leaf of the smallest. */
+static void deal(const struct comm *comm, int stride, const int64_t *share)
 {
-    int n = comm->rank < stride ? make(comm->rank, stride) : 0, n_leaf = LEAVES * comm->n_rank;
+    int64_t shares = 0, least = INT64_MAX;
+    for (int r = 0; r < comm->n_rank; r++) {
+        int64_t own = share ? share[r] : 1;
+        shares += own;
+        least = own < least ? own : least;
+    }
+    int n = comm->rank < stride ? make(comm->rank, stride) : 0, n_leaf = graph_leaves_wanted(comm, N);
     int *owner = calloc((size_t)n_leaf, sizeof *owner), *first = calloc((size_t)n_leaf, sizeof *first);
     int64_t *work = calloc((size_t)comm->n_rank, sizeof *work), n_all = n, n_stay = 0;
     struct rcb *tree = rcb_create(comm, n_leaf, NULL, x[0], weight, n);
     for (int k = 0; k < N; k++) leaf[k] = rcb_owner(tree, x[k]);
     struct graph_elements elements = {n, weight, begin, to, leaf, true};
-    graph_leaves(comm, n_leaf, &elements, share, threshold, owner);
+    double accepted = (double)shares / ((double)least * n_leaf);
+    graph_leaves(comm, n_leaf, &elements, share, accepted, owner);
     memcpy(first, owner, (size_t)n_leaf * sizeof *first);
     comm_bcast(comm, first, (size_t)n_leaf * sizeof *first, 0);
     CHECK(!memcmp(first, owner, (size_t)n_leaf * sizeof *first));
@@ -78,9 +85,9 @@ int main(int argc, char **argv)
     struct comm *comm = comm_create(&argc, &argv);
     int64_t share[128];
     for (int r = 0; r < comm->n_rank; r++) share[r] = 100 * (1 + r % 3);
-    deal(comm, comm->n_rank, NULL, 0.03, 0.03);
-    deal(comm, 1, NULL, 0.03, 0.03); /* all on rank 0 */
-    deal(comm, comm->n_rank, share, 0.05, 0.05);
+    deal(comm, comm->n_rank, NULL);
+    deal(comm, 1, NULL); /* all on rank 0 */
+    deal(comm, comm->n_rank, share);
     comm_free(comm);
     return 0;
 }

@@ -3,6 +3,8 @@
 names of tests."""
 import itertools
 import os
+import shutil
+import subprocess
 
 import yaml
 
@@ -54,6 +56,39 @@ class Partition(parallel_runs.Case):
             scene = self.scene(name)
             alone = self.found(self.good_run(scene, 1))
             self.check_same(scene, alone, ranks, method="graph", every=10)
+
+    def slow_kernels(self):
+        """Kernels that take longer and do the same."""
+        folder = os.path.join(self.dir, "slow")
+        shutil.copytree(os.path.join(os.path.dirname(parallel_runs.CASES), "kernels"), folder)
+        path, begin = os.path.join(folder, "gather.cl"), "    real4 f = (real4)(0), t = (real4)(0);\n"
+        with open(path) as file:
+            text = file.read()
+        self.assertEqual(text.count(begin), 1)
+        waste = ("    real waste = (real)e;\n    for (int k = 0; k < 4000; k++) waste = waste * (real)0.999 + (real)1.5;\n"
+                 "    if (waste < 0) f.s0 = waste;\n")
+        with open(path, "w") as file:
+            file.write(text.replace(begin, begin + waste))
+        return folder
+
+    def test_unlike(self):
+        """Two ranks, one on a device that takes several times as long, here by kernels with a delay: its share becomes the smaller one, whatever
+        rank it is, and the bits stay."""
+        scene, slow = self.scene("column"), self.slow_kernels()
+        alone = self.good_run(scene, 1).record()["digest"]
+        for method, rank in (("geometric", 0), ("graph", 1)):
+            args = ["run", scene, "-o", os.path.join(self.dir, "unlike"), "--force", "--quiet",
+                    *keys(method=method, weights="measured", every=37, threshold=0)]
+            part = [["-n", "1", *(["env", f"DEMOCLES_KERNELS={slow}"] if r == rank else []), parallel_runs.DEMOCLES, *args] for r in range(2)]
+            with self.subTest(method=method, slow=rank):
+                run = subprocess.run([parallel_runs.MPIRUN, *parallel_runs.MPIRUN_ARGS, *part[0], ":", *part[1]], cwd=self.dir,
+                                     capture_output=True, text=True, timeout=parallel_runs.HANG)
+                self.assertEqual(run.returncode, 0, run.stderr)
+                record = parallel_runs.Run(args[3], 0, "").record()
+                ranks = record["partition"]["ranks"]
+                self.assertEqual(record["digest"], alone)
+                self.assertLess(ranks[rank]["share"], 0.4)
+                self.assertLess(ranks[rank]["work"], 0.8 * ranks[1 - rank]["work"])
 
     def test_lattice(self):
         scene = os.path.join(self.dir, "lattice.yaml")
