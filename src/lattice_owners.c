@@ -32,8 +32,8 @@ static double (*places(const struct lattice_cells *cells, int run_axis))[3]
 }
 
 /* Cuts this rank's share of the cells into n_leaf; `by_links`: each link to an upper cell is a point of its own, at its middle. */
-static struct rcb *cut(const struct comm *comm, const struct lattice_cells *cells, double (*x)[3], int run_axis, int n_leaf, const int64_t *share,
-    bool by_links)
+static struct rcb *cut(
+    const struct comm *comm, const struct lattice_cells *cells, double (*x)[3], int run_axis, int n_leaf, const int64_t *share, bool by_links)
 {
     int64_t part = (cells->n + comm->n_rank - 1) / comm->n_rank, begin = part * comm->rank, end = begin + part < cells->n ? begin + part : cells->n;
     size_t room = end > begin ? (size_t)(end - begin) : 0;
