@@ -106,11 +106,49 @@ LAW preal select_gap(preal x, preal low, preal high, preal period)
     return period > 0 && round < gap ? round : gap;
 }
 
-/* Ghosts for one neighbour: at [n + 1] = 1 where the element's reach comes within far_reach of the box of the neighbour's centres. */
+/* Nodes that wait on the way through a tree of cuts: at most one per level, and a tree is as deep as the logarithm of its leaves. */
+#define SELECT_DEPTH 32
+
+/* Whether the cube of half an edge r round x meets a leaf of the tree that belongs to `rank`. */
+LAW int select_meets(const preal *x, preal r, int rank, int n_node, __global const int *node, __global const preal *cut)
+{
+    int waiting[SELECT_DEPTH], n = 0, to = n_node > 0 ? 0 : -1;
+    for (;;) {
+        while (to >= 0) {
+            __global const int *k = node + 3 * to;
+            preal y = x[k[0]], c = cut[to];
+            if (y - r < c && y + r >= c && n < SELECT_DEPTH) waiting[n++] = k[2];
+            to = y - r < c ? k[1] : k[2];
+        }
+        if (-1 - to == rank) return 1;
+        if (n == 0) return 0;
+        to = waiting[--n];
+    }
+}
+
+/* The same of x and all its images whose cubes reach into the domain (low and high of each axis). */
+LAW int select_meets_image(pvec3 own, preal r, preal period_x, preal period_y, preal period_z, __global const preal *domain, int rank, int n_node,
+                           __global const int *node, __global const preal *cut)
+{
+    const preal centre[3] = {own.x, own.y, own.z}, period[3] = {period_x, period_y, period_z};
+    for (int image = 0; image < 27; image++) {
+        int shift[3] = {image % 3, image / 3 % 3, image / 9}, is_near = 1;
+        preal x[3];
+        for (int a = 0; a < 3; a++) {
+            x[a] = centre[a] + (preal)(shift[a] == 2 ? -1 : shift[a]) * period[a];
+            if (shift[a] != 0 && (period[a] <= 0 || x[a] + r < domain[a] || x[a] - r > domain[3 + a])) is_near = 0;
+        }
+        if (is_near && select_meets(x, r, rank, n_node, node, cut)) return 1;
+    }
+    return 0;
+}
+
+/* Ghosts for one neighbour, `rank`: at [n + 1] = 1 where the element's reach comes within far_reach of the box of the neighbour's centres and of a
+ * leaf that is the neighbour's. */
 __kernel __attribute__((reqd_work_group_size(GROUP, 1, 1)))
-void select_ghosts(int n, __global const preal *position, __global const preal *reach, preal low_x, preal low_y, preal low_z, preal high_x,
-                   preal high_y,
-                   preal high_z, preal far_reach,
+void select_ghosts(int n, int rank, int n_node, __global const preal *position, __global const preal *reach, __global const int *node,
+                   __global const preal *cut, __global const preal *domain, preal low_x, preal low_y, preal low_z, preal high_x,
+                   preal high_y, preal high_z, preal far_reach,
 #if WITH_PERIODIC_X || WITH_PERIODIC_Y || WITH_PERIODIC_Z
                    preal period_x, preal period_y, preal period_z,
 #endif
@@ -124,5 +162,5 @@ void select_ghosts(int n, __global const preal *position, __global const preal *
 #endif
     pvec3 gap = p3(select_gap(x.s0, low_x, high_x, period_x), select_gap(x.s1, low_y, high_y, period_y), select_gap(x.s2, low_z, high_z, period_z));
     preal r = (reach[e] + far_reach) * (preal)1.0001;
-    at[e] = p3_dot(gap, gap) < r * r;
+    at[e] = p3_dot(gap, gap) < r * r && select_meets_image(XYZ(x), r, period_x, period_y, period_z, domain, rank, n_node, node, cut);
 }

@@ -1,4 +1,4 @@
-/* Level by level, all groups of a level together, so the number of reductions grows with the logarithm of the number of ranks: about ten per level.
+/* Level by level, all groups of a level together, so the number of reductions grows with the logarithm of the number of leaves: about ten per level.
  *
  * The cut of a group is found exactly and without sorting: each coordinate is taken as a 64-bit key of the same order, and a radix selection finds
  * the key at which the sum of weights passes the target, 8 bits per pass over the points and one reduction of 256 sums per group. Points of that very
@@ -17,23 +17,24 @@
 
 enum { DIGIT = 256, N_DIGIT = 8 };
 
-/* Ranks first to first + count - 1 and the points that are theirs together. */
+/* Leaves first to first + count - 1 and the points that are theirs together. */
 struct group {
     int node, first, count;
+    int64_t shares, left; /* of all of them, of the first count/2 */
     int64_t weight;
     int axis[3]; /* longest side first */
     /* The best cut so far: its axis, and the left side's keys, those below `key`, with `key` itself if `with`. */
     int best;
     uint64_t key;
     bool with;
-    int64_t miss; /* |left weight count - weight n_left|, in weights times ranks; -1: no cut yet */
+    int64_t miss; /* |left weight shares - weight left|, in weights times shares; -1: no cut yet */
     bool open;    /* another axis is to be tried */
 };
 
 struct points {
     const double *x;       /* [n][3] */
     const int64_t *weight; /* [n] */
-    int *group;            /* [n]; -1: has its rank */
+    int *group;            /* [n]; -1: has its leaf */
     int64_t n;
 };
 
@@ -92,8 +93,8 @@ static void measure(const struct comm *comm, const struct points *p, struct grou
  * axis is tried too: a plane of points with one coordinate cannot be split along it. */
 static void consider(struct group *g, int axis, uint64_t key, int64_t below, int64_t at, int64_t heaviest)
 {
-    int n_left = g->count / 2;
-    int64_t goal = g->weight * n_left, low = llabs(below * g->count - goal), high = llabs((below + at) * g->count - goal);
+    int64_t goal = g->weight * g->left, low = llabs(below * g->shares - goal), high = llabs((below + at) * g->shares - goal);
+    int64_t smaller = g->left < g->shares - g->left ? g->left : g->shares - g->left;
     bool with = high < low;
     int64_t miss = with ? high : low;
     if (g->miss < 0 || miss < g->miss) {
@@ -102,7 +103,7 @@ static void consider(struct group *g, int axis, uint64_t key, int64_t below, int
         g->with = with;
         g->miss = miss;
     }
-    g->open = g->miss > heaviest * g->count / 2 && g->miss > goal / 20;
+    g->open = g->miss > heaviest * g->shares / 2 && g->miss > g->weight * smaller / 20;
 }
 
 /* Finds the cut of each open group along its `attempt`-longest axis. */
@@ -124,7 +125,7 @@ static void select_keys(const struct comm *comm, const struct points *p, struct 
         comm_sum_i64(comm, sum, n_group * DIGIT);
         for (int g = 0; g < n_group; g++) {
             if (!group[g].open) continue;
-            int64_t target = group[g].weight * (group[g].count / 2) / group[g].count; /* < weight, so a digit is found */
+            int64_t target = group[g].weight * group[g].left / group[g].shares; /* < weight, so a digit is found */
             int d = 0;
             for (; below[g] + sum[g * DIGIT + d] <= target; d++) below[g] += sum[g * DIGIT + d];
             prefix[g] = prefix[g] << 8 | (uint64_t)d;
@@ -167,28 +168,37 @@ static void place_cuts(const struct comm *comm, const struct points *p, const st
     free(side);
 }
 
-/* Child of node g->node with `count` ranks from `first`: a rank, or a node and a group of the next level. */
-static int child(int first, int count, struct group *next, int *n_next, int *n_node)
+static int64_t shares_of(const int64_t *share, int first, int count)
+{
+    int64_t sum = 0;
+    for (int k = first; k < first + count; k++) sum += share ? share[k] : 1;
+    return sum;
+}
+
+/* Child of node g->node with `count` leaves from `first`: a leaf, or a node and a group of the next level. */
+static int child(const int64_t *share, int first, int count, struct group *next, int *n_next, int *n_node)
 {
     if (count == 1) return -1 - first;
-    next[(*n_next)++] = (struct group){.node = *n_node, .first = first, .count = count};
+    next[(*n_next)++] = (struct group){
+        .node = *n_node, .first = first, .count = count, .shares = shares_of(share, first, count), .left = shares_of(share, first, count / 2)};
     return (*n_node)++;
 }
 
 /* Writes the level's nodes and makes the groups of the next level. Returns how many. */
-static int split(struct rcb *rcb, struct points *p, const struct group *group, int n_group, const double *cut, struct group *next, int *n_node)
+static int split(struct rcb *rcb, const int64_t *share, struct points *p, const struct group *group, int n_group, const double *cut,
+    struct group *next, int *n_node)
 {
     int n_next = 0;
-    int(*to)[2] = fail_alloc((size_t)n_group * sizeof *to); /* group of the next level, -1: a rank */
+    int(*to)[2] = fail_alloc((size_t)n_group * sizeof *to); /* group of the next level, -1: a leaf */
     for (int g = 0; g < n_group; g++) {
         const struct group *h = &group[g];
         int n_left = h->count / 2, k = h->node;
         rcb->axis[k] = h->best;
         rcb->cut[k] = cut[g];
         to[g][0] = n_left > 1 ? n_next : -1;
-        rcb->left[k] = child(h->first, n_left, next, &n_next, n_node);
+        rcb->left[k] = child(share, h->first, n_left, next, &n_next, n_node);
         to[g][1] = h->count - n_left > 1 ? n_next : -1;
-        rcb->right[k] = child(h->first + n_left, h->count - n_left, next, &n_next, n_node);
+        rcb->right[k] = child(share, h->first + n_left, h->count - n_left, next, &n_next, n_node);
     }
     for (int64_t i = 0; i < p->n; i++) {
         int g = p->group[i];
@@ -198,16 +208,16 @@ static int split(struct rcb *rcb, struct points *p, const struct group *group, i
     return n_next;
 }
 
-struct rcb *rcb_create(const struct comm *comm, const double *x, const int64_t *weight, int64_t n)
+struct rcb *rcb_create(const struct comm *comm, int n_leaf, const int64_t *share, const double *x, const int64_t *weight, int64_t n)
 {
-    int n_part = comm->n_rank, n_group = 0, n_node = 0;
+    int n_group = 0, n_node = 0;
     struct rcb *rcb = fail_alloc(sizeof *rcb);
     struct points p = {x, weight, fail_alloc((size_t)n * sizeof *p.group), n};
-    struct group *group = fail_alloc((size_t)n_part * sizeof *group), *next = fail_alloc((size_t)n_part * sizeof *next);
-    double *cut = fail_alloc((size_t)n_part * sizeof *cut);
+    struct group *group = fail_alloc((size_t)n_leaf * sizeof *group), *next = fail_alloc((size_t)n_leaf * sizeof *next);
+    double *cut = fail_alloc((size_t)n_leaf * sizeof *cut);
     int64_t heaviest = 0;
 
-    rcb->n_node = n_part - 1;
+    rcb->n_node = n_leaf - 1;
     rcb->axis = fail_alloc((size_t)rcb->n_node * sizeof *rcb->axis);
     rcb->cut = fail_alloc((size_t)rcb->n_node * sizeof *rcb->cut);
     rcb->left = fail_alloc((size_t)rcb->n_node * sizeof *rcb->left);
@@ -218,7 +228,7 @@ struct rcb *rcb_create(const struct comm *comm, const double *x, const int64_t *
     }
     comm_max_i64(comm, &heaviest, 1);
 
-    if (n_part > 1) child(0, n_part, group, &n_group, &n_node);
+    if (n_leaf > 1) child(share, 0, n_leaf, group, &n_group, &n_node);
     while (n_group > 0) {
         measure(comm, &p, group, n_group);
         for (int attempt = 0; attempt < 3; attempt++) {
@@ -227,7 +237,7 @@ struct rcb *rcb_create(const struct comm *comm, const double *x, const int64_t *
             if (open) select_keys(comm, &p, group, n_group, attempt, heaviest);
         }
         place_cuts(comm, &p, group, n_group, cut);
-        n_group = split(rcb, &p, group, n_group, cut, next, &n_node);
+        n_group = split(rcb, share, &p, group, n_group, cut, next, &n_node);
         struct group *swap = group;
         group = next;
         next = swap;
@@ -244,6 +254,14 @@ int rcb_owner(const struct rcb *rcb, const double x[3])
     int k = rcb->n_node > 0 ? 0 : -1;
     while (k >= 0) k = x[rcb->axis[k]] < rcb->cut[k] ? rcb->left[k] : rcb->right[k];
     return -1 - k;
+}
+
+void rcb_assign(struct rcb *rcb, const int *owner)
+{
+    int *child[] = {rcb->left, rcb->right};
+    for (int side = 0; side < 2; side++)
+        for (int k = 0; k < rcb->n_node; k++)
+            if (child[side][k] < 0) child[side][k] = -1 - owner[-1 - child[side][k]];
 }
 
 void rcb_free(struct rcb *rcb)

@@ -84,12 +84,13 @@ static bool may_meet(const struct ghosts *g, const struct box *a, const struct b
     return sum < reach * reach;
 }
 
-/* Appends to g->index the owned elements that the rank with `box` needs; returns how many. */
+/* The owned elements that `rank` with `box` needs, into `piece`; returns how many. */
 static int64_t select_for(
-    struct device *dev, struct ghosts *g, struct scan *scan, const struct particles *p, const struct box *box, struct buffer *piece)
+    struct device *dev, struct ghosts *g, struct scan *scan, const struct particles *p, int rank, const struct box *box, struct buffer *piece)
 {
     static const char *const low[] = {"low_x", "low_y", "low_z"}, *const high[] = {"high_x", "high_y", "high_z"};
     launch_set_int(g->select, "n", (int)p->n_owned);
+    launch_set_int(g->select, "rank", rank);
     launch_bind_buffer(g->select, "position", &p->field[FIELD_STATE].now);
     launch_bind_buffer(g->select, "reach", &p->reach);
     launch_bind_buffer(g->select, "at", &g->pick);
@@ -138,7 +139,7 @@ static void choose(struct device *dev, struct ghosts *g, struct scan *scan, cons
     for (int r = 0; r < comm->n_rank; r++) {
         count_to[r] = 0;
         if (r == comm->rank || !may_meet(g, &all[comm->rank], &all[r])) continue;
-        count_to[r] = select_for(dev, g, scan, p, &all[r], &piece);
+        count_to[r] = select_for(dev, g, scan, p, r, &all[r], &piece);
         index = fail_realloc(index, (size_t)(g->n_send + count_to[r]) * sizeof *index);
         buffer_read(dev, &piece, 0, (size_t)count_to[r] * sizeof *index, index + g->n_send);
         g->n_send += count_to[r];
@@ -149,7 +150,8 @@ static void choose(struct device *dev, struct ghosts *g, struct scan *scan, cons
     free(index);
 }
 
-void ghosts_plan(struct device *dev, struct ghosts *g, struct scan *scan, struct particles *p, const struct cells_bounds *own)
+void ghosts_plan(
+    struct device *dev, struct ghosts *g, const struct owners *owners, struct scan *scan, struct particles *p, const struct cells_bounds *own)
 {
     const struct comm *comm = g->comm;
     p->n_ghost = 0;
@@ -159,6 +161,10 @@ void ghosts_plan(struct device *dev, struct ghosts *g, struct scan *scan, struct
     memcpy(mine.low, own->low, sizeof mine.low);
     memcpy(mine.high, own->high, sizeof mine.high);
     comm_gather(comm, &mine, all, sizeof mine);
+    launch_set_int(g->select, "n_node", owners->n_node);
+    launch_bind_buffer(g->select, "node", &owners->node);
+    launch_bind_buffer(g->select, "cut", &owners->cut);
+    launch_bind_buffer(g->select, "domain", &owners->domain);
     choose(dev, g, scan, p, all, count_to);
     g->before = ghosts_sent(g);
     halo_free(g->halo);

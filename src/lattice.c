@@ -5,9 +5,9 @@
 #include <string.h>
 
 #include "../kernels/lattice_words.h"
-#include "../partition/partition.h"
 #include "fail.h"
 #include "lattice_break.h"
+#include "lattice_owners.h"
 
 static const char *const sources[] = {"link_force.cl", "lattice_pack.cl", NULL};
 static const char *const sources_volume[] = {"link_force.cl", "link_volume.cl", "lattice_pack.cl", NULL};
@@ -20,35 +20,6 @@ size_t lattice_x_bytes(const struct lattice *l)
 size_t lattice_v_bytes(const struct lattice *l)
 {
     return l->features.real_is_float ? sizeof(float) : sizeof(double);
-}
-
-/* How long a side counts when a body is to be cut across its longest: a cut across runs splits them, whose parts are padded and send single cells,
- * one between layers of runs sends whole layers. Measured on 100^3 cells in runs along x and two ranks: 390 bytes per cell with a cut across x, 267
- * across z. */
-#define SPLIT_COUNTS 0.5
-#define LAYER_COUNTS 0.99
-
-/* Every rank has all cells: it hands in its share of them and asks for all owners. Weight: 1 + links. The caller frees. */
-static int *owners(const struct comm *comm, const struct lattice_cells *cells, int run_axis)
-{
-    int64_t share = (cells->n + comm->n_rank - 1) / comm->n_rank, begin = share * comm->rank, n = cells->n - begin < share ? cells->n - begin : share;
-    int last = run_axis == 2 ? 1 : 2; /* along which whole layers follow each other */
-    if (n < 0) n = 0;
-    double(*x)[3] = fail_alloc((size_t)cells->n * sizeof *x);
-    int64_t *weight = fail_alloc((size_t)n * sizeof *weight);
-    int *owner = fail_alloc((size_t)cells->n * sizeof *owner);
-    for (int64_t i = 0; i < cells->n; i++) {
-        const struct lattice_grid *g = &cells->grid[cells->kind[cells->kind_of[i]].grid];
-        for (int a = 0; a < 3; a++)
-            x[i][a] = (a == run_axis ? SPLIT_COUNTS : a == last ? 1 : LAYER_COUNTS) * (g->origin[a] + (cells->at[i][a] + 0.5) * g->h);
-    }
-    for (int64_t i = 0; i < n; i++) weight[i] = 1 + __builtin_popcount(cells->bits[begin + i] & 63);
-    struct rcb *rcb = rcb_create(comm, n > 0 ? x[begin] : x[0], weight, n);
-    for (int64_t i = 0; i < cells->n; i++) owner[i] = rcb_owner(rcb, x[i]);
-    rcb_free(rcb);
-    free(x);
-    free(weight);
-    return owner;
 }
 
 static void put_ints(struct lattice *l, struct buffer *buffer, const char *name, const int *value, int64_t n)
@@ -175,9 +146,8 @@ struct lattice *lattice_create(struct device *dev, const struct comm *comm, cons
     l->n_global = cells->n;
     l->n_kind = cells->n_kind;
     struct lattice_lay run = options->run.length > 0 ? options->run : lattice_layout_run(cells);
-    int *owner = owners(comm, cells, run.axis);
+    int *owner = lattice_owners(comm, cells, options, run.axis);
     l->layout = lattice_layout_create(cells, owner, comm->rank, comm->n_rank, run, l->features.volume ? 2 : 1);
-    free(owner);
     char *text = lattice_features_options(&l->features, l->layout);
     l->program = program_build(dev, comm, "lattice", text, l->features.volume ? sources_volume : sources);
     free(text);
@@ -189,6 +159,8 @@ struct lattice *lattice_create(struct device *dev, const struct comm *comm, cons
     if (comm->n_rank > 1)
         l->halo = lattice_halo_create(dev, comm, l->program, l->layout, &l->x, LATTICE_X(l->features.turn), lattice_x_bytes(l), &l->v,
             l->features.link_damping ? LATTICE_V : 0, lattice_v_bytes(l), l->features.breakage ? &l->word : NULL);
+    l->part = lattice_owners_part(cells, owner, comm->rank, l->halo ? l->halo->halo->n_send : 0);
+    free(owner);
     if (l->features.breakage) l->breakage = lattice_break_create(l, cells);
     first_state(l, cells);
     return l;

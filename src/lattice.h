@@ -5,6 +5,7 @@
 #ifndef DEMOCLES_LATTICE_H
 #define DEMOCLES_LATTICE_H
 
+#include "../partition/partition.h"
 #include "lattice_features.h"
 #include "lattice_halo.h"
 
@@ -21,7 +22,8 @@ struct lattice {
     int64_t n_global;
     int n_kind;
     struct lattice_layout *layout;
-    struct lattice_halo *halo; /* NULL on one rank */
+    struct partition_part part; /* this rank's */
+    struct lattice_halo *halo;  /* NULL on one rank */
     struct program *program;
     struct launch *force, *volume, *first;
     struct lattice_break *breakage; /* NULL where nothing breaks */

@@ -26,6 +26,8 @@ struct lattice_options {
     lattice_rows_at *rows_at;
     void *context;
     struct lattice_lay run; /* length 0: what suits the body */
+    struct scene_partition partition;
+    const int64_t *share; /* [n_rank] of the work that each rank is to have (partition.h); NULL: equal ones */
 };
 
 struct lattice_features {

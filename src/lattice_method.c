@@ -13,6 +13,9 @@
 #include "resume.h"
 #include "scene_report.h"
 
+/* Steps to measure the speed of the ranks by, and those before. */
+enum { MEASURED_STEPS = 20, FIRST_STEPS = 5 };
+
 static bool is_listed(char *const *list, int n, const char *word)
 {
     for (int k = 0; k < n; k++)
@@ -64,13 +67,38 @@ static void plan(struct sim *s)
     if (s->from) s->solid->input->options.energy = lattice_restore_energy(s, s->solid->input->options.energy);
 }
 
+static struct lattice *create(struct sim *s)
+{
+    struct lattice *l = lattice_create(s->dev, s->comm, s->solid->cells, &s->solid->input->options);
+    l->timers = &s->timers;
+    balance_add(s->balance, l->part);
+    return l;
+}
+
+/* Steps that nobody keeps, with equal shares: what each rank does in a second is its share of the cells then. The first ones compile kernels. */
+static void measure(struct sim *s)
+{
+    struct lattice *l = create(s);
+    lattice_resume(l);
+    for (int k = 0; k < FIRST_STEPS; k++) lattice_advance(l, false);
+    device_finish(s->dev);
+    balance_go_on(s->balance, &s->timers, 0);
+    for (int k = 0; k < MEASURED_STEPS; k++) lattice_advance(l, false);
+    device_finish(s->dev);
+    balance_look(s->balance, &s->timers, MEASURED_STEPS);
+    lattice_free(l);
+}
+
 static void setup(struct sim *s)
 {
     struct lattice_run *r = s->solid;
     log_print(s->log, "%lld cells in %d %s", (long long)s->n_first, s->scene->n_body, s->scene->n_body == 1 ? "body" : "bodies");
     if (r->input->options.energy) energy_require_double(s);
-    r->lattice = lattice_create(s->dev, s->comm, r->cells, &r->input->options);
-    r->lattice->timers = &s->timers;
+    r->input->options.partition = s->scene->partition;
+    r->input->options.share = s->balance->share;
+    if (s->scene->partition.weights == WEIGHTS_MEASURED && s->comm->n_rank > 1) measure(s);
+    r->lattice = create(s);
+    balance_restart(s->balance);
     if (s->from) lattice_restore_cells(s);
     r->account = lattice_energy_create(r->lattice, r->cells);
     if (wants_stress(s->scene)) r->stress = lattice_stress_create(r->lattice, s->scene->lattice.stress == STRESS_EXTRAPOLATED);
@@ -158,6 +186,11 @@ static void check_limit(struct sim *s)
 static int64_t number(const struct sim *s)
 {
     return s->n_first;
+}
+
+static int64_t owned(const struct sim *s)
+{
+    return s->solid->lattice->layout->n_owned;
 }
 
 /* Interactions: links whose lower cell this rank has. */
@@ -249,6 +282,7 @@ const struct step_ops lattice_ops = {
     .measure_columns = lattice_method_measure_columns,
     .measure = lattice_method_measure,
     .digest = digest,
+    .n_owned = owned,
     .count = count,
     .report_features = report_features,
     .report_energy = report_energy,

@@ -72,12 +72,14 @@ static int print(const struct comm *comm, const struct options *options)
 
 int main(int argc, char **argv)
 {
+    signals_hold(); /* from the threads of MPI and OpenCL */
     struct comm *comm = comm_create(&argc, &argv);
     struct options options = options_parse(argc, argv);
     if (options.error) fail_stop_together(EXIT_USAGE, "%s", options.error);
 
     int code;
     bool runs = options.command == OPTIONS_RUN || options.command == OPTIONS_RESUME;
+    if (!runs) signals_pass();
     if (options.help || options.version || (!runs && options.command != OPTIONS_CHECK)) code = print(comm, &options);
     else code = runs ? run(comm, &options) : check(comm, &options);
 

@@ -21,7 +21,7 @@ struct owners_removed {
 struct owners {
     const struct comm *comm;
     const struct features *features;
-    struct buffer node, cut, domain; /* tree of cuts; domain box */
+    struct buffer node, cut, domain; /* tree of cuts, for select.cl; domain box */
     int n_node;
     struct buffer owner, stay, leave, index; /* per element */
     struct buffer old_index;                 /* [n_owned + n_ghost] for the carriers */

@@ -1,5 +1,6 @@
-/* The parts of the particle method, by file: particle_input.c, particle_setup.c, particle_resume.c, particle_regroup.c, particle_step.c,
- * particle_limit.c, particle_frame.c, particle_contacts.c, particle_measures.c, particle_report.c. What step.h describes is not described again. */
+/* The parts of the particle method, by file: particle_input.c, particle_setup.c, particle_resume.c, particle_cut.c, particle_regroup.c,
+ * particle_step.c, particle_limit.c, particle_frame.c, particle_contacts.c, particle_measures.c, particle_report.c. What step.h describes is not
+ * described again. */
 #ifndef DEMOCLES_PARTICLE_H
 #define DEMOCLES_PARTICLE_H
 
@@ -13,14 +14,16 @@ void particle_warn(struct sim *s);
 void particle_free(struct sim *s);
 /* New owners, ghosts and lists, histories carried over. Collective. */
 void particle_regroup(struct sim *s);
+/* A new tree of cuts by the scene's method; elements have not moved yet. Collective. */
+void particle_cut(struct sim *s);
 /* Ghosts, lists and everything that depends on their sizes, for owned elements that are in place. Collective. particle_lists: where also their room
  * to move is. */
 void particle_build(struct sim *s);
 void particle_lists(struct sim *s);
 /* In place of the start of a run: elements, lists and all that they remember from the frame s->from. Collective. */
 void particle_resume(struct sim *s);
-/* Owners by cuts through the places x [n][3] of all ranks. Collective. */
-void particle_cut(struct sim *s, const double *x, int64_t n);
+/* Owners by cuts through the places x [n][3] of all ranks, by place alone: nothing is known yet of interactions. Collective. */
+void particle_spread(struct sim *s, const double *x, int64_t n);
 /* Forces of pairs and walls at the present step, into the result records. */
 void particle_forces(struct sim *s);
 /* Binds the step's kernels to buffers; sets sizes. After every build. */
@@ -36,6 +39,7 @@ double particle_limit_dense(const struct sim *s);
 void particle_check_limit(struct sim *s);
 
 int64_t particle_number(const struct sim *s);
+int64_t particle_owned(const struct sim *s);
 void particle_frame(struct sim *s, int64_t index);
 int particle_measure_columns(enum measure_kind kind, const struct series_column **column);
 void particle_measure(struct sim *s, const bool *due, double (*value)[MEASURE_COLUMNS]);

@@ -31,41 +31,16 @@ static double smallest_radius(const struct sim *s)
     return r;
 }
 
-/* Positions and interaction counts to rank-wise cuts. */
-static void cut(struct sim *s)
-{
-    struct particles *p = s->particles;
-    size_t n = (size_t)p->n_owned;
-    struct particles_host *h = particles_download(s->dev, p, &s->features, s->scene, s->first);
-    int64_t *weight = fail_alloc(n * sizeof *weight);
-    cl_int *begin = fail_alloc((n + 1) * sizeof *begin);
-    buffer_read(s->dev, &s->pairs->now.row_begin, 0, (n + 1) * sizeof *begin, begin);
-    for (size_t i = 0; i < n; i++) weight[i] = 1 + begin[i + 1] - begin[i];
-    rcb_free(s->rcb);
-    s->rcb = rcb_create(s->comm, h->x, weight, h->n);
-    owners_set_tree(s->dev, s->owners, s->rcb);
-    s->cut_at = s->step;
-    s->n_repartition++;
-    free(weight);
-    free(begin);
-    particles_host_free(h);
-}
-
-static bool cut_is_due(const struct sim *s)
-{
-    const struct scene_partition *p = &s->scene->partition;
-    return s->comm->n_rank > 1 && p->every > 0 && s->step - s->cut_at >= p->every && s->imbalance_now > p->threshold;
-}
-
-static void count_removed(struct sim *s)
+/* Returns how many have changed hands. */
+static int64_t count_removed(struct sim *s)
 {
     int64_t n[2] = {s->owners->n_removed, s->owners->n_moved};
     for (int64_t i = 0; i < s->owners->n_removed; i++) particle_left(s, s->owners->removed[i].x);
     comm_sum_i64(s->comm, n, 2);
     s->n_removed += n[0];
-    s->n_moved += n[1];
     s->particles->n_global -= n[0];
     if (s->features.energy) energy_moved(s, n[0]);
+    return n[1];
 }
 
 /* Where the scene has given the domain's extent and does not say that elements may leave it, one that does ends the run. */
@@ -135,23 +110,23 @@ void particle_lists(struct sim *s)
     }
     comm_min_f64(s->comm, s->box, 3);
     comm_max_f64(s->comm, s->box + 3, 3);
-    ghosts_plan(dev, s->ghosts, s->scan, p, &s->bounds);
+    ghosts_plan(dev, s->ghosts, s->owners, s->scan, p, &s->bounds);
     struct cells_bounds all = p->n_ghost > 0 ? cells_bounds(dev, s->cells, p, p->n_owned + p->n_ghost) : s->bounds;
     cells_sort(dev, s->cells, s->scan, p, p->n_owned + p->n_ghost, &all);
     pairs_build(dev, s->pairs, s->cells, s->scan, p);
     if (s->wall_contacts) wall_contacts_build(dev, s->wall_contacts, s->scan, p, s->step, (int)ceil(s->horizon / s->dt), s->box, s->box + 3);
     watch_reset(dev, &s->watch, s->comm, &p->flags);
     s->built_at = s->step;
-    int64_t work = s->pairs->now.n_interior + s->pairs->now.n_boundary + p->n_owned;
-    s->imbalance_now = partition_imbalance(s->comm, work);
-    s->imbalance_sum += s->imbalance_now;
-    s->imbalance_max = fmax(s->imbalance_max, s->imbalance_now);
-    s->n_imbalance++;
+    const struct pair_list *l = &s->pairs->now;
+    int64_t n_pair = l->n_interior + l->n_boundary, n_wall = s->wall_contacts ? s->wall_contacts->now.n : 0;
+    int64_t n_neighbour = s->ghosts->halo ? s->ghosts->halo->n_send : 0;
+    balance_add(s->balance, (struct partition_part){p->n_owned + n_pair + n_wall, n_pair - l->n_own, n_neighbour});
 }
 
 void particle_regroup(struct sim *s)
 {
     ghosts_settle(s->dev, s->ghosts);
+    balance_look(s->balance, &s->timers, s->step);
     struct cells_bounds now = cells_bounds(s->dev, s->cells, s->particles, s->particles->n_owned);
     int32_t lost = now.has_nan;
     comm_or_i32(s->comm, &lost, 1);
@@ -160,12 +135,15 @@ void particle_regroup(struct sim *s)
     if (s->features.energy) energy_collect(s);
     adapt_skin(s, smallest_radius(s));
     if (s->wall_contacts) wall_contacts_set_step(s->dev, s->wall_contacts, s->step);
-    if (cut_is_due(s)) cut(s);
+    bool is_due = balance_is_due(s->balance);
+    balance_begin(s->balance);
+    if (is_due) particle_cut(s);
     owners_move(s->dev, s->owners, s->cells, s->scan, s->particles, s->pairs, s->wall_contacts, &now);
-    count_removed(s);
+    balance_end(s->balance, is_due, count_removed(s));
     particle_build(s);
     pairs_carry(s->dev, s->pairs, s->particles, &s->owners->old_index);
     if (s->wall_contacts) wall_contacts_carry(s->dev, s->wall_contacts, &s->owners->old_index);
     particle_bind(s);
     s->n_rebuild++;
+    balance_go_on(s->balance, &s->timers, s->step);
 }

@@ -40,6 +40,11 @@ int64_t particle_number(const struct sim *s)
     return s->particles->n_global;
 }
 
+int64_t particle_owned(const struct sim *s)
+{
+    return s->particles->n_owned;
+}
+
 void particle_count(const struct sim *s, struct step_counts *counts)
 {
     const struct halo *halo = s->ghosts->halo;

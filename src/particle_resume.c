@@ -36,7 +36,7 @@ static void distribute(struct sim *s, struct frame_table *t)
     double *x = fail_alloc(3 * (size_t)t->n * sizeof *x);
     int32_t *to = fail_alloc((size_t)t->n * sizeof *to);
     for (int64_t i = 0; i < t->n; i++) memcpy(x + 3 * i, reference + 4 * i, 3 * sizeof *x);
-    particle_cut(s, x, t->n);
+    particle_spread(s, x, t->n);
     for (int64_t i = 0; i < t->n; i++) to[i] = rcb_owner(s->rcb, x + 3 * i);
     frame_table_send(t, s->comm, to, 1);
     free(x);
@@ -147,7 +147,9 @@ void particle_resume(struct sim *s)
     s->limit = limit_create(s);
     restore_left(s);
     restore_energy(s);
+    balance_restart(s->balance);
+    s->balance->dealt_at = s->step;
+    balance_go_on(s->balance, &s->timers, s->step);
     resume_recall(s);
     restore_flags(s);
-    s->cut_at = s->step;
 }

@@ -123,11 +123,11 @@ void particle_bind(struct sim *s)
     launch_set_int(s->wall_force, "capacity", (int)w->now.capacity);
 }
 
-void particle_cut(struct sim *s, const double *x, int64_t n)
+void particle_spread(struct sim *s, const double *x, int64_t n)
 {
     int64_t *weight = fail_alloc((size_t)n * sizeof *weight);
     for (int64_t i = 0; i < n; i++) weight[i] = 1;
-    s->rcb = rcb_create(s->comm, x, weight, n);
+    s->rcb = rcb_create(s->comm, s->comm->n_rank, NULL, x, weight, n);
     owners_set_tree(s->dev, s->owners, s->rcb);
     free(weight);
 }
@@ -139,7 +139,7 @@ static void distribute(struct sim *s)
     int64_t share = (e->n + s->comm->n_rank - 1) / s->comm->n_rank, begin = share * s->comm->rank;
     int64_t n = e->n - begin < share ? e->n - begin : share;
     if (n < 0) n = 0;
-    particle_cut(s, n > 0 ? e->x + 3 * begin : e->x, n);
+    particle_spread(s, n > 0 ? e->x + 3 * begin : e->x, n);
     unsigned char *take = fail_alloc((size_t)e->n);
     for (int64_t i = 0; i < e->n; i++) take[i] = rcb_owner(s->rcb, e->x + 3 * i) == s->comm->rank;
     particles_upload(s->dev, s->particles, &s->features, e, s->scene, take);
@@ -174,8 +174,10 @@ static void start(struct sim *s)
     particle_build(s);
     particle_bind(s);
     s->limit = limit_create(s);
-    particle_regroup(s); /* once for nothing: its kernels are compiled before the clock runs, and what starts outside leaves at once */
+    if (s->comm->n_rank > 1) particle_cut(s); /* now that interactions are known */
+    particle_regroup(s);                      /* its kernels are compiled before the clock runs, and what starts outside leaves at once */
     s->n_rebuild = 0;
+    balance_restart(s->balance);
     first_forces(s);
     energy_now(s, &s->energy_start);
 }

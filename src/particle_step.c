@@ -99,6 +99,7 @@ const struct step_ops particle_ops = {
     .measure_columns = particle_measure_columns,
     .measure = particle_measure,
     .digest = particle_digest,
+    .n_owned = particle_owned,
     .count = particle_count,
     .report_features = particle_report_features,
     .report_energy = particle_report_energy,

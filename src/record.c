@@ -58,11 +58,12 @@ static void add_scale(struct report *r, struct sim *s)
     report_number(r, "element_steps_per_s", loop > 0 ? s->element_steps / loop : 0);
     report_timers(r, "timers", s->comm, &s->timers);
     report_integer(r, "rebuilds", s->n_rebuild);
-    report_integer(r, "repartitions", s->n_repartition);
-    report_integer(r, "migrations", s->n_moved);
+    const struct partition_quality *q = &s->balance->quality;
+    report_integer(r, "repartitions", s->balance->n_deal);
+    report_integer(r, "migrations", s->balance->n_moved);
     report_begin(r, "imbalance");
-    report_number(r, "mean", s->n_imbalance ? s->imbalance_sum / (double)s->n_imbalance : 0);
-    report_number(r, "max", s->imbalance_max);
+    report_number(r, "mean", q->n > 0 ? q->imbalance_sum / (double)q->n : 0);
+    report_number(r, "max", q->imbalance_max);
     report_end(r);
     double n = s->step > s->begun_at ? (double)(s->step - s->begun_at) : 1;
     report_number(r, "halo_bytes_per_step", (double)sum[1] / n);
@@ -127,7 +128,7 @@ bool record_write(struct sim *s, int exit_code, bool observed)
     report_text(r, "scheme", lattice_schemes_table((enum lattice_scheme)s->scene->time.scheme)->name); /* particles: leapfrog */
     report_integer(r, "ranks", s->comm->n_rank);
     add_devices(r, s);
-    report_text(r, "partition", "geometric");
+    balance_report(s->balance, r, &s->timers, s->step - s->begun_at, s->ops->n_owned(s));
     report_begin(r, "features");
     s->ops->report_features(s, r);
     report_end(r);
@@ -148,6 +149,7 @@ bool record_write(struct sim *s, int exit_code, bool observed)
         double loop = s->timers.total[TIMER_LOOP];
         log_print(s->log, "%lld steps of %lld elements in %.2f s: %.3g million element steps per second", (long long)(s->step - s->begun_at),
             (long long)s->n_first, loop, loop > 0 ? s->element_steps / loop * 1e-6 : 0);
+        balance_print(s->balance, s->log);
         log_print(s->log, "digest %s", whole ? digest : "none: the state holds NaN");
     }
     report_free(r);

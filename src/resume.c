@@ -155,16 +155,22 @@ struct scene *resume_scene(const struct comm *comm, struct resume *r, const char
 static const struct {
     const char *name;
     enum column_type type;
-    size_t at; /* in struct sim */
-} noted[RESUME_SCALARS] = {{"dt", COLUMN_F64, offsetof(struct sim, dt)}, {"inputs", COLUMN_I64, offsetof(struct sim, inputs)},
-    {"limit_at", COLUMN_I64, offsetof(struct sim, limit_at)}, {"dt_limit", COLUMN_F64, offsetof(struct sim, dt_limit)},
-    {"n_removed", COLUMN_I64, offsetof(struct sim, n_removed)}, {"n_rebuild", COLUMN_I64, offsetof(struct sim, n_rebuild)},
-    {"n_repartition", COLUMN_I64, offsetof(struct sim, n_repartition)}, {"n_moved", COLUMN_I64, offsetof(struct sim, n_moved)}};
+    size_t at; /* in struct sim, or in its balance */
+    bool is_balance;
+} noted[RESUME_SCALARS] = {{"dt", COLUMN_F64, offsetof(struct sim, dt), false}, {"inputs", COLUMN_I64, offsetof(struct sim, inputs), false},
+    {"limit_at", COLUMN_I64, offsetof(struct sim, limit_at), false}, {"dt_limit", COLUMN_F64, offsetof(struct sim, dt_limit), false},
+    {"n_removed", COLUMN_I64, offsetof(struct sim, n_removed), false}, {"n_rebuild", COLUMN_I64, offsetof(struct sim, n_rebuild), false},
+    {"n_repartition", COLUMN_I64, offsetof(struct balance, n_deal), true}, {"n_moved", COLUMN_I64, offsetof(struct balance, n_moved), true}};
+
+static void *noted_at(const struct sim *s, int k)
+{
+    return (char *)(noted[k].is_balance ? (void *)s->balance : (void *)s) + noted[k].at;
+}
 
 void resume_note(const struct sim *s, struct frame_scalar scalar[RESUME_SCALARS])
 {
     for (int k = 0; k < RESUME_SCALARS; k++) {
-        const char *at = (const char *)s + noted[k].at;
+        const void *at = noted_at(s, k);
         scalar[k] = (struct frame_scalar){.name = noted[k].name, .type = noted[k].type};
         if (noted[k].type == COLUMN_F64) memcpy(&scalar[k].f64, at, sizeof scalar[k].f64);
         else memcpy(&scalar[k].i64, at, sizeof scalar[k].i64);
@@ -175,7 +181,7 @@ void resume_recall(struct sim *s)
 {
     const struct h5_reader *reader = s->from->reader;
     for (int k = 0; k < RESUME_SCALARS; k++) {
-        char *at = (char *)s + noted[k].at;
+        void *at = noted_at(s, k);
         int64_t integer = noted[k].type == COLUMN_I64 ? h5_read_i64(reader, noted[k].name) : 0;
         double real = noted[k].type == COLUMN_F64 ? h5_read_f64(reader, noted[k].name) : 0;
         memcpy(at, noted[k].type == COLUMN_F64 ? (const void *)&real : &integer, sizeof integer);

@@ -63,7 +63,6 @@ struct scene_key {
     const char *fallback; /* default as YAML text; NULL: none */
     struct key_range range;
     const char *words;    /* KEY_CHOICE, KEY_WORDS: "linear|hertz", in the order of the enum, an empty one cannot be chosen */
-    const char *later;    /* KEY_CHOICE: a word that is known but refused */
     const char *special;  /* KEY_NUMBER, KEY_INTEGER, KEY_VECTOR, KEY_MAP: a word in place of a number, of the mapping ... */
     double special_value; /* ... and what is stored for it */
     double absent;        /* number stored where the key is neither given nor has a default */

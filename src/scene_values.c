@@ -133,7 +133,8 @@ static void read_integer(const struct scene_place *p, const struct scene_node *n
     }
     long *to = scene_key_place(p->key, p->record);
     if (to) *to = (long)value;
-    scene_write(&p->reader->out, " %ld\n", (long)value);
+    if (p->key->special && value == p->key->special_value) scene_write_value(&p->reader->out, p->key->special);
+    else scene_write(&p->reader->out, " %ld\n", (long)value);
 }
 
 static void read_bool(const struct scene_place *p, const struct scene_node *node)
@@ -155,10 +156,6 @@ static void read_choice(const struct scene_place *p, const struct scene_node *no
     const char *word[MAX_WORDS];
     int n = split_words(p->key->words, buffer, sizeof buffer, word);
     if (!scene_values_is_kind(p, node, NODE_SCALAR, "a word")) return;
-    if (p->key->later && strcmp(node->text, p->key->later) == 0) {
-        scene_issue_at(p->reader, node, p->path, "%s %s is not part of this version", scene_key_name(p->key), node->text);
-        return;
-    }
     int index = find_word(p, node, word, n, "word");
     if (index < 0) return;
     int *to = scene_key_place(p->key, p->record);

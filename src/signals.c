@@ -24,6 +24,24 @@ void signals_keep(void)
         if (sigaction(wanted[i], &action, NULL) != 0) fail_stop(EXIT_IO, "sigaction(%d) fails", wanted[i]);
 }
 
+static void mask_term(int how)
+{
+    sigset_t term;
+    sigemptyset(&term);
+    sigaddset(&term, SIGTERM);
+    if (sigprocmask(how, &term, NULL) != 0) fail_stop(EXIT_IO, "sigprocmask fails");
+}
+
+void signals_hold(void)
+{
+    mask_term(SIG_BLOCK);
+}
+
+void signals_pass(void)
+{
+    mask_term(SIG_UNBLOCK);
+}
+
 void signals_install(void)
 {
     seen = 0;

@@ -73,6 +73,7 @@ struct sim *sim_create(struct scene *scene, struct comm *comm, struct log *log, 
     s->ops = scene->method == METHOD_LATTICE ? &lattice_ops : &particle_ops;
     s->started = timer_now();
     s->rest.left = (double)NAN;
+    s->balance = balance_create(comm, &scene->partition);
     timer_begin(&s->timers, TIMER_SETUP);
     s->ops->read(s);
     s->ops->plan(s);
@@ -165,6 +166,7 @@ int sim_run(struct sim *s)
 {
     bool stop = false;
     signals_keep();
+    signals_pass();
     double *total = s->timers.total;
     total[TIMER_EXCHANGE] = total[TIMER_WAIT] = total[TIMER_REGROUP] = 0; /* the set-up's belong to TIMER_SETUP */
     struct step_counts counts;
@@ -209,6 +211,7 @@ void sim_free(struct sim *s)
     s->ops->free(s);
     output_free(s->output);
     trace_free(s->trace);
+    balance_free(s->balance);
     device_free(s->dev);
     free(s);
 }

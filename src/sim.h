@@ -4,7 +4,7 @@
 #ifndef DEMOCLES_SIM_H
 #define DEMOCLES_SIM_H
 
-#include "../partition/partition.h"
+#include "balance.h"
 #include "energy.h"
 #include "ghosts.h"
 #include "log.h"
@@ -63,11 +63,11 @@ struct sim {
     struct cells_bounds bounds; /* of owned elements at the last build */
     double box[6];              /* of all elements of all ranks at the last build */
 
-    int64_t step, n_step;     /* now; last */
-    int64_t begun_at;         /* step at which this process took up the run */
-    int64_t cut_at, limit_at; /* of the last partition; of the last look at the limit */
-    bool observed;            /* the state on the device is that of a full step */
-    double dt, dt_limit;      /* [s]; rigorous limit at the last build */
+    int64_t step, n_step; /* now; last */
+    int64_t begun_at;     /* step at which this process took up the run */
+    int64_t limit_at;     /* of the last look at the limit */
+    bool observed;        /* the state on the device is that of a full step */
+    double dt, dt_limit;  /* [s]; rigorous limit at the last build */
     struct {
         int64_t next;   /* step of the next look whether the elements are at rest; 0: the scene does not ask */
         bool reached;   /* the run ends then */
@@ -80,9 +80,8 @@ struct sim {
     struct outputs *output;
 
     /* account of the run */
-    int64_t n_rebuild, n_repartition, n_removed, n_moved;
-    double imbalance_sum, imbalance_max, imbalance_now;
-    int64_t n_imbalance;
+    int64_t n_rebuild, n_removed;
+    struct balance *balance;
     struct energy *energy;
     struct energy_sums energy_start;
     double element_steps;         /* elements times steps so far */

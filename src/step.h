@@ -47,6 +47,7 @@ struct step_ops {
     bool (*digest)(struct sim *s, uint64_t *digest);                                     /* false: NaN in the state */
 
     /* The record. */
+    int64_t (*n_owned)(const struct sim *s);                        /* elements of this rank, now */
     void (*count)(const struct sim *s, struct step_counts *counts); /* of this rank; not collective */
     void (*report_features)(const struct sim *s, struct report *r);
     void (*report_energy)(struct sim *s, struct report *r, bool observed); /* observed: the state is that of a full step. Collective */

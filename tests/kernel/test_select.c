@@ -1,57 +1,19 @@
-/* Records moved by index, owners by a tree of cuts, bounds, room, ghosts: each against the host. Compiled once for each precision and set of periodic
+/* Records moved by index, owners by a tree of cuts, bounds, room: each against the host. Compiled once for each precision and set of periodic
  * directions, see meson.build. */
-#include "lists_fixture.h"
+#include "tree_fixture.h"
 
-#include "../../partition/partition.h"
-#include "fail.h"
-
-enum { N = 3000, N_RANK = 13 };
+enum { N = 3000 };
 static struct lists lists;
-static uint64_t seed = 77;
-static const bool periodic[3] = {WITH_PERIODIC_X, WITH_PERIODIC_Y, WITH_PERIODIC_Z};
-
-static double uniform(double low, double high)
-{
-    return scratch_random(&seed, low, high);
-}
-
-static void upload(const struct crowd *c)
-{
-    struct particles *p = lists.particles;
-    size_t n = (size_t)c->n_all;
-    p->n_owned = c->n_owned;
-    p->n_ghost = c->n_all - c->n_owned;
-    particles_reserve(lists.dev, p, &lists.features, c->n_all, 0);
-    buffer_write(lists.dev, &p->field[FIELD_STATE].now, 0, n * sizeof *c->element, c->element);
-    buffer_write(lists.dev, &p->field[FIELD_GID].now, 0, n * sizeof *c->gid, c->gid);
-    buffer_write(lists.dev, &p->reach, 0, n * sizeof *c->reach, c->reach);
-}
-
-/* Coordinates in the unit cube and up to `beyond` outside of it. */
-static struct crowd make(int n, double beyond)
-{
-    struct crowd c = crowd_create(n, n);
-    for (int e = 0; e < n; e++) {
-        for (int a = 0; a < 3; a++) {
-            c.element[e].x[a] = (preal)uniform(-beyond, 1 + beyond);
-            c.element[e].v[a] = (real)uniform(-3, 3);
-        }
-        c.element[e].radius = (preal)uniform(0.01, 0.02);
-        c.reach[e] = (preal)uniform(0.02, 0.05);
-        c.gid[e] = 3 * N - 2 * e;
-    }
-    return c;
-}
 
 static void records_follow_an_index(void **state)
 {
     (void)state;
-    struct crowd c = make(N, 0), got = crowd_create(N, N);
+    struct crowd c = tree_crowd(N, 0), got = crowd_create(N, N);
     struct buffer index;
     int from[N];
-    for (int e = 0; e < N; e++) from[e] = (int)uniform(0, N); /* any, some twice */
+    for (int e = 0; e < N; e++) from[e] = (int)tree_random(0, N); /* any, some twice */
     fixture_buffer(lists.dev, &index, "index", sizeof from, from);
-    upload(&c);
+    tree_upload(&lists, &c);
     particles_reserve_spare(lists.dev, lists.particles, N);
     particles_permute(lists.dev, lists.particles, &index, N);
     particles_swap(lists.particles);
@@ -73,7 +35,7 @@ static void selected_and_numbered(void **state)
     int flag[N + 1] = {0}, got[N], n_set = 0;
     struct buffer at, index;
     struct launch *select = launch_create(lists.program, "record_select"), *number = launch_create(lists.program, "record_number");
-    for (int e = 0; e < N; e++) n_set += flag[e] = e == 0 || e == N - 1 || uniform(0, 1) < 0.3;
+    for (int e = 0; e < N; e++) n_set += flag[e] = e == 0 || e == N - 1 || tree_random(0, 1) < 0.3;
     fixture_buffer(lists.dev, &at, "at", sizeof flag, flag);
     fixture_buffer(lists.dev, &index, "index", sizeof got, NULL);
     buffer_zero(lists.dev, &index);
@@ -99,35 +61,6 @@ static void selected_and_numbered(void **state)
     buffer_free(lists.dev, &index);
 }
 
-/* A random tree of cuts with N_RANK leaves; node k is a child of a lower one. Cuts are such as preal holds. */
-struct tree {
-    struct rcb rcb;
-    int axis[N_RANK - 1], left[N_RANK - 1], right[N_RANK - 1];
-    double cut[N_RANK - 1];
-};
-
-static void grow(struct tree *t, int n_rank)
-{
-    int rank = 1;
-    memset(t, 0, sizeof *t);
-    t->rcb = (struct rcb){.n_node = n_rank - 1, .axis = t->axis, .cut = t->cut, .left = t->left, .right = t->right};
-    for (int k = 0; k < n_rank - 1; k++) {
-        t->axis[k] = (int)uniform(0, 3);
-        t->cut[k] = (double)(preal)uniform(0.2, 0.8);
-        t->left[k] = -1; /* rank 0 */
-        t->right[k] = -1;
-        if (k == 0) t->right[0] = -1 - rank++;
-        while (k > 0) { /* splits one of the leaves there are */
-            int parent = (int)uniform(0, k), *child = uniform(0, 1) < 0.5 ? &t->left[parent] : &t->right[parent];
-            if (*child >= 0) continue;
-            t->left[k] = *child;
-            t->right[k] = -1 - rank++;
-            *child = k;
-            break;
-        }
-    }
-}
-
 struct owned {
     int owner[N], stay[N], leave[N];
     struct record element[N];
@@ -135,30 +68,19 @@ struct owned {
 
 static void run_owner(const struct crowd *c, const struct tree *t, int rank, bool remove, struct owned *out)
 {
-    int node[3 * N_RANK] = {0};
-    preal cut[N_RANK] = {0}, domain[6] = {0, 0, 0, (preal)LISTS_PERIOD, (preal)LISTS_PERIOD, (preal)LISTS_PERIOD};
     struct launch *k = launch_create(lists.program, "select_owner");
     struct buffer buffer[6];
     static const char *const axis[] = {"period_x", "period_y", "period_z"};
-    for (int n = 0; n < t->rcb.n_node; n++) {
-        node[3 * n] = t->axis[n];
-        node[3 * n + 1] = t->left[n];
-        node[3 * n + 2] = t->right[n];
-        cut[n] = (preal)t->cut[n];
-    }
-    upload(c);
+    tree_upload(&lists, c);
     launch_bind_buffer(k, "position", &lists.particles->field[FIELD_STATE].now);
-    fixture_bind(lists.dev, k, &buffer[0], "node", sizeof node, node);
-    fixture_bind(lists.dev, k, &buffer[1], "cut", sizeof cut, cut);
-    fixture_bind(lists.dev, k, &buffer[2], "domain", sizeof domain, domain);
+    tree_bind(&lists, k, t, buffer);
     fixture_bind(lists.dev, k, &buffer[3], "owner", sizeof out->owner, NULL);
     fixture_bind(lists.dev, k, &buffer[4], "stay", sizeof out->stay, NULL);
     fixture_bind(lists.dev, k, &buffer[5], "leave", sizeof out->leave + sizeof(int), NULL);
     launch_set_int(k, "n", N);
     launch_set_int(k, "rank", rank);
-    launch_set_int(k, "n_node", t->rcb.n_node);
     launch_set_int(k, "remove", remove);
-    for (int a = 0; a < 3; a++) launch_set_real_if(k, axis[a], periodic[a] ? LISTS_PERIOD : 0);
+    for (int a = 0; a < 3; a++) launch_set_real_if(k, axis[a], tree_periodic[a] ? LISTS_PERIOD : 0);
     launch_run(k, lists.dev->compute, N, 0, NULL, NULL);
     buffer_read(lists.dev, &buffer[3], 0, sizeof out->owner, out->owner);
     buffer_read(lists.dev, &buffer[4], 0, sizeof out->stay, out->stay);
@@ -171,10 +93,10 @@ static void run_owner(const struct crowd *c, const struct tree *t, int rank, boo
 static void check_owner(int n_rank, double beyond, bool remove)
 {
     static struct owned got;
-    struct crowd c = make(N, beyond);
+    struct crowd c = tree_crowd(N, beyond);
     struct tree t;
     int n_out = 0, n_wrapped = 0;
-    grow(&t, n_rank);
+    tree_grow(&t, n_rank);
     c.element[0].x[0] = 0; /* on the boundary */
     c.element[1].x[0] = 1;
     c.element[2].x[t.axis[0]] = (preal)t.cut[0];
@@ -184,8 +106,8 @@ static void check_owner(int n_rank, double beyond, bool remove)
         bool outside = false;
         for (int a = 0; a < 3; a++) {
             preal own = c.element[e].x[a];
-            if (periodic[a] && own < 0) own += (preal)LISTS_PERIOD;
-            if (periodic[a] && own >= (preal)LISTS_PERIOD) own -= (preal)LISTS_PERIOD;
+            if (tree_periodic[a] && own < 0) own += (preal)LISTS_PERIOD;
+            if (tree_periodic[a] && own >= (preal)LISTS_PERIOD) own -= (preal)LISTS_PERIOD;
             n_wrapped += own < c.element[e].x[a] || own > c.element[e].x[a];
             fixture_same("wrapped coordinate", e, got.element[e].x[a], own);
             x[a] = (double)own;
@@ -197,7 +119,7 @@ static void check_owner(int n_rank, double beyond, bool remove)
         assert_int_equal(got.leave[e], owner != n_rank / 2);
         n_out += outside;
     }
-    bool all = periodic[0] && periodic[1] && periodic[2], none = !periodic[0] && !periodic[1] && !periodic[2];
+    bool all = tree_periodic[0] && tree_periodic[1] && tree_periodic[2], none = !tree_periodic[0] && !tree_periodic[1] && !tree_periodic[2];
     if (beyond > 0) assert_true((all ? n_out == 0 : n_out > 10) && (none ? n_wrapped == 0 : n_wrapped > 10));
     crowd_free(&c);
 }
@@ -208,8 +130,8 @@ static void owners_by_the_tree(void **state)
     for (int remove = 0; remove < 2; remove++) {
         check_owner(1, 0, remove);
         check_owner(2, 0.02, remove);
-        check_owner(N_RANK, 0, remove);
-        check_owner(N_RANK, 0.02, remove);
+        check_owner(TREE_LEAVES, 0, remove);
+        check_owner(TREE_LEAVES, 0.02, remove);
     }
 }
 
@@ -218,10 +140,10 @@ static void bounds_of_all(void **state)
     static const int size[] = {1, 2, 63, 64, 65, 2999, 3000};
     (void)state;
     for (size_t k = 0; k < sizeof size / sizeof *size; k++) {
-        struct crowd c = make(size[k], 0.5);
+        struct crowd c = tree_crowd(size[k], 0.5);
         double low[3] = {9, 9, 9}, high[3] = {-9, -9, -9}, reach[2] = {9, -9};
         real fastest = 0;
-        upload(&c);
+        tree_upload(&lists, &c);
         struct cells_bounds b = cells_bounds(lists.dev, lists.cells, lists.particles, size[k]);
         for (int e = 0; e < size[k]; e++) {
             const real *v = c.element[e].v;
@@ -240,7 +162,7 @@ static void bounds_of_all(void **state)
             struct record *r = &c.element[bad == 0 ? 0 : bad == 1 ? size[k] - 1 : size[k] / 2], good = *r;
             if (bad % 2) r->x[bad % 3] = bad == 1 ? (preal)NAN : (preal)INFINITY;
             else r->v[bad % 3] = bad == 0 ? (real)NAN : (real)-INFINITY;
-            upload(&c);
+            tree_upload(&lists, &c);
             assert_true(cells_bounds(lists.dev, lists.cells, lists.particles, size[k]).has_nan);
             *r = good;
         }
@@ -254,11 +176,11 @@ static void bounds_of_all(void **state)
 static void room_to_move(void **state)
 {
     static preal reference[N][4], reach[N];
-    struct crowd c = make(N, 0);
+    struct crowd c = tree_crowd(N, 0);
     struct launch *k = launch_create(lists.program, "select_room");
     struct particles *p = lists.particles;
     (void)state;
-    upload(&c);
+    tree_upload(&lists, &c);
     buffer_reserve(lists.dev, &p->reference, sizeof reference);
     launch_bind_buffer(k, "position", &p->field[FIELD_STATE].now);
     launch_bind_buffer(k, "motion", &p->field[FIELD_STATE].now);
@@ -283,71 +205,10 @@ static void room_to_move(void **state)
     crowd_free(&c);
 }
 
-/* Distance of x from the box, of all its images the nearest. */
-static double distance_to(const preal x[3], const double low[3], const double high[3])
-{
-    double square = 0;
-    for (int a = 0; a < 3; a++) {
-        double best = (double)INFINITY;
-        for (int image = periodic[a] ? -1 : 0; image <= (periodic[a] ? 1 : 0); image++) {
-            double y = (double)x[a] + image * LISTS_PERIOD;
-            best = fmin(best, fmax(fmax(low[a] - y, y - high[a]), 0));
-        }
-        square += best * best;
-    }
-    return sqrt(square);
-}
-
-/* All that a neighbour may need, and none that is further by more than a thousandth. */
-static void check_ghosts(struct launch *k, const struct buffer *at, double far_reach, int *n_taken)
-{
-    static const char *const name[2][3] = {{"low_x", "low_y", "low_z"}, {"high_x", "high_y", "high_z"}}, *const axis[] = {
-                                                                                                             "period_x", "period_y", "period_z"};
-    struct crowd c = make(N, 0);
-    double low[3], high[3];
-    for (int a = 0; a < 3; a++) {
-        low[a] = (double)(preal)uniform(0, 0.9);
-        high[a] = uniform(0, 1) < 0.2 ? low[a] : (double)(preal)uniform(low[a], 1);
-        launch_set_real(k, name[0][a], low[a]);
-        launch_set_real(k, name[1][a], high[a]);
-        launch_set_real_if(k, axis[a], periodic[a] ? LISTS_PERIOD : 0);
-    }
-    upload(&c);
-    launch_bind_buffer(k, "position", &lists.particles->field[FIELD_STATE].now);
-    launch_bind_buffer(k, "reach", &lists.particles->reach);
-    launch_set_int(k, "n", N);
-    launch_set_real(k, "far_reach", far_reach);
-    launch_run(k, lists.dev->compute, N, 0, NULL, NULL);
-    int *taken = lists_ints(&lists, at, N);
-    for (int e = 0; e < N; e++) {
-        double distance = distance_to(c.element[e].x, low, high), reach = (double)c.reach[e] + far_reach;
-        assert_in_range(taken[e], 0, 1);
-        if (distance < reach) assert_int_equal(taken[e], 1);
-        if (distance > 1.001 * reach) assert_int_equal(taken[e], 0);
-        *n_taken += taken[e];
-    }
-    free(taken);
-    crowd_free(&c);
-}
-
-static void ghosts_within_reach_of_a_box(void **state)
-{
-    struct launch *k = launch_create(lists.program, "select_ghosts");
-    struct buffer at;
-    int n_taken = 0;
-    (void)state;
-    fixture_bind(lists.dev, k, &at, "at", (N + 1) * sizeof(int), NULL);
-    for (int box = 0; box < 20; box++) check_ghosts(k, &at, box % 2 ? 0.03 : 0.2, &n_taken);
-    assert_true(n_taken > N / 2 && n_taken < 19 * N);
-    buffer_free(lists.dev, &at);
-    launch_free(k);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(records_follow_an_index), cmocka_unit_test(selected_and_numbered),
-        cmocka_unit_test(owners_by_the_tree), cmocka_unit_test(bounds_of_all), cmocka_unit_test(room_to_move),
-        cmocka_unit_test(ghosts_within_reach_of_a_box)};
+        cmocka_unit_test(owners_by_the_tree), cmocka_unit_test(bounds_of_all), cmocka_unit_test(room_to_move)};
     lists_open(&lists);
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     lists_close(&lists);

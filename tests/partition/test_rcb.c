@@ -1,5 +1,5 @@
 /* Recursive bisection: balance, the same tree for any distribution of the points, the first cut against brute force, and the awkward inputs:
- * coordinates that tie, fewer points than parts, none. The number of parts is what struct comm says, so that one process can cut into 128. */
+ * coordinates that tie, fewer points than parts, none; parts of unlike shares, leaves with owners. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,20 +41,23 @@ static int home(int spread, int i, int n, int n_rank)
     return spread == 2 ? block : n_rank - 1 - block;
 }
 
-static struct rcb *cut(const struct comm *comm, const struct cloud *c, int n_part, int spread)
+static struct rcb *cut_shares(const struct comm *comm, const struct cloud *c, int n_part, const int64_t *share, int spread)
 {
-    struct comm parts = *comm;
     static double x[MAX_POINTS][3];
     static int64_t weight[MAX_POINTS];
     int n = 0;
-    parts.n_rank = n_part;
     for (int k = 0; k < c->n; k++) {
         int i = spread == 3 ? c->n - 1 - k : k; /* another order, too */
         if (home(spread, i, c->n, comm->n_rank) != comm->rank) continue;
         memcpy(x[n], c->x[i], sizeof x[n]);
         weight[n++] = c->weight[i];
     }
-    return rcb_create(&parts, x[0], weight, n);
+    return rcb_create(comm, n_part, share, x[0], weight, n);
+}
+
+static struct rcb *cut(const struct comm *comm, const struct cloud *c, int n_part, int spread)
+{
+    return cut_shares(comm, c, n_part, NULL, spread);
 }
 
 /* Every node but the root is a child once, every rank is a leaf once, cuts are numbers. */
@@ -214,14 +217,54 @@ static void few(const struct comm *comm)
         }
 }
 
+/* Every part has its share within the weight of one point; the same share for all is the same tree as no shares. */
+static void shares(const struct comm *comm, const struct cloud *c)
+{
+    static const int64_t share[7] = {1000, 1, 400, 2, 50, 3, 900};
+    int64_t sum[7], total = 0, all = 0, equal[7];
+    struct rcb *rcb = cut_shares(comm, c, 7, share, 1), *same, *none = cut(comm, c, 7, 2);
+    check_tree(rcb, 7);
+    check_same_on_all(comm, rcb);
+    sums(rcb, c, 7, sum);
+    for (int i = 0; i < c->n; i++) total += c->weight[i];
+    for (int p = 0; p < 7; p++) {
+        all += share[p];
+        equal[p] = 123;
+    }
+    for (int p = 0; p < 7; p++) CHECK(llabs(sum[p] * all - total * share[p]) <= 9 * all);
+    same = cut_shares(comm, c, 7, equal, 3);
+    check_same(same, none);
+    rcb_free(rcb);
+    rcb_free(same);
+    rcb_free(none);
+}
+
+/* Leaves that belong to somebody. */
+static void owned_leaves(const struct comm *comm, const struct cloud *c)
+{
+    static const int owner[6] = {3, 0, 3, 1, 0, 2};
+    struct rcb *leaves = cut(comm, c, 6, 1), *owned = cut(comm, c, 6, 1);
+    rcb_assign(owned, owner);
+    for (int i = 0; i < c->n; i++) CHECK(rcb_owner(owned, c->x[i]) == owner[rcb_owner(leaves, c->x[i])]);
+    rcb_free(leaves);
+    rcb_free(owned);
+}
+
 static void imbalance(const struct comm *comm)
 {
     int n = comm->n_rank;
-    double u = partition_imbalance(comm, comm->rank + 1); /* max n, mean (n + 1)/2 */
-    CHECK(fabs(u - (n - 1.0) / (n + 1.0)) < 1e-15);
-    CHECK(partition_imbalance(comm, 7) == 0);
-    CHECK(partition_imbalance(comm, 0) == 0);
-    CHECK(partition_imbalance(comm, comm->rank == 0 ? 12 : 0) == n - 1.0);
+    double mean = 0;
+    struct partition_quality q = {0};
+    CHECK(partition_imbalance((int64_t[]){1, 2, 3, 4}, NULL, 4) == 4 / 2.5 - 1);
+    CHECK(partition_imbalance((int64_t[]){7, 7, 7}, NULL, 3) == 0 && partition_imbalance((int64_t[]){0, 0}, NULL, 2) == 0);
+    CHECK(partition_imbalance((int64_t[]){12, 0, 0}, NULL, 3) == 2);
+    CHECK(partition_imbalance((int64_t[]){10, 20, 30}, (int64_t[]){1, 2, 3}, 3) == 0);
+    CHECK(fabs(partition_imbalance((int64_t[]){30, 30}, (int64_t[]){1, 2}, 2) - 0.5) < 1e-15); /* 30 where 20 are due */
+    for (int r = 0; r < n; r++) mean += (r + 1.0) / n;
+    partition_quality_add(&q, comm, &(struct partition_part){comm->rank + 1, 2 * comm->rank, comm->rank}, NULL);
+    partition_quality_add(&q, comm, &(struct partition_part){5, 1, 1}, NULL);
+    CHECK(q.n == 2 && fabs(q.imbalance_max - (n / mean - 1)) < 1e-15 && q.imbalance == 0 && q.imbalance_sum == q.imbalance_max);
+    CHECK(q.cut_sum == n * (n - 1) + n && q.neighbours_max == (n > 2 ? n - 1 : 1) && fabs(q.neighbours_sum - ((n - 1) / 2.0 + 1)) < 1e-12);
 }
 
 int main(int argc, char **argv)
@@ -239,6 +282,8 @@ int main(int argc, char **argv)
     }
     ties(comm);
     few(comm);
+    shares(comm, heavy);
+    owned_leaves(comm, heavy);
     imbalance(comm);
     rcb_free(NULL);
     free(even);

@@ -57,7 +57,8 @@ static void types(void **state)
 static void what_is_not_here_yet(void **state)
 {
     struct fixture *f = *state;
-    fixture_expect_one(f, SCENE(ONE "partition: {method: graph}\n"), "scene.yaml:5:21: partition.method: method graph is not part of this version");
+    fixture_expect_one(
+        f, SCENE(ONE "partition: {method: grpah}\n"), "scene.yaml:5:21: partition.method: unknown word 'grpah'; did you mean 'graph'?");
 }
 
 /* shape goes with fill, not with file; and one of the two is needed. */

@@ -89,7 +89,7 @@ static void messages_name_the_option(void **state)
         "domain.box[0]=1",
         "domain[0]=1",
         "gravity[3]=1",
-        "partition.method=graph",
+        "partition.method=grpah",
     };
     const char *const message[] = {
         "--set time.end=1 mm: time.end: 'mm' is the unit of a length; expected a time, as in '1 s'",
@@ -105,7 +105,7 @@ static void messages_name_the_option(void **state)
         "--set domain.box[0]=1: domain.box: the scene does not give this list; set it as a whole",
         "--set domain[0]=1: domain[0]: what it would be part of is no list",
         "--set gravity[3]=1: gravity[3]: no such entry, there are [0] to [2]",
-        "--set partition.method=graph: partition.method: method graph is not part of this version",
+        "--set partition.method=grpah: partition.method: unknown word 'grpah'; did you mean 'graph'?",
     };
     fixture_expect(f, set, 14, message, 14);
 }
