@@ -11,7 +11,7 @@
 
 /* The queue that reads back what is packed for sending: one beside the kernels, where a device can copy while it computes. One that computes on the
  * host's cores has workers for either; with a queue of its own they would come to the copy after the interior, if they find that first. Measured on
- * one core, two ranks: 46 to 70 % of the steps then had messages under most of the interior, 79 to 82 % with the queue of the kernels. */
+ * one core, two ranks: 46 to 69 % of the steps then had messages under most of the interior, 79 to 83 % with the queue of the kernels. */
 static inline cl_command_queue exchange_queue(const struct device *dev)
 {
     return device_shares_cores(dev) ? dev->compute : dev->copy;
