@@ -176,7 +176,12 @@ bool halo_poll(struct halo *halo)
 void halo_end(struct halo *halo)
 {
     struct internal *in = halo->internal;
+    int done = 0;
     assert(halo->n_open == 0);
-    check_mpi(MPI_Waitall(halo->n_send, halo->request + halo->n_recv, MPI_STATUSES_IGNORE));
+    for (;;) {
+        check_mpi(MPI_Testall(halo->n_send, halo->request + halo->n_recv, &done, MPI_STATUSES_IGNORE));
+        if (done) break;
+        comm_pause(halo->comm); /* MPI_Waitall would spin, where the device's workers may need the core */
+    }
     in->sending = false;
 }

@@ -1,10 +1,22 @@
 /* Ghosts of the lattice: gathers the planes of the cells that others need into records, and spreads records that have arrived. Words, not numbers, so
- * that one text serves any precision: a record has n_x numbers of x_words words, then n_v of v_words. With WITH_BREAK the cell's own word follows:
- * a ghost has lost the links that its owner's cell has lost. */
+ * that one text serves any precision and records need no padding: X_NUMBERS places and rotations, then velocities where links are damped, and with
+ * WITH_BREAK the cell's own word: a ghost has lost the links that its owner's cell has lost. */
+#include "lattice_words.h"
+#include "types.h"
 
-/* index [n]: cells; record [n][n_x * x_words + n_v * v_words + WITH_BREAK]. x_in, v_in: first number of the set of planes. */
-__kernel void lattice_pack(int n, __global const int *index, long plane, __global const int *x, long x_in, int n_x, int x_words,
-                           __global const int *v, long v_in, int n_v, int v_words,
+#define X_NUMBERS LATTICE_X(WITH_TURN)
+#define V_NUMBERS (WITH_LINK_DAMPING ? LATTICE_V : 0)
+#define X_WORDS (int)(sizeof(preal) / sizeof(int))
+#define V_WORDS (int)(sizeof(real) / sizeof(int))
+#define RECORD (X_NUMBERS * X_WORDS + V_NUMBERS * V_WORDS + WITH_BREAK)
+/* Word b of number k of cell i; `of`: X or V. */
+#define WORD(of, set, k, b, i) ((size_t)(set) + (k) * (size_t)plane + (size_t)(i)) * of##_WORDS + (b)
+#define FOR_WORDS(of, k, b) \
+    for (int k = 0; k < of##_NUMBERS; k++) \
+        for (int b = 0; b < of##_WORDS; b++)
+
+/* index [n]: cells; record [n][RECORD]. x_in, v_in: first number of the set of planes. */
+__kernel void lattice_pack(int n, __global const int *index, long plane, __global const int *x, long x_in, __global const int *v, long v_in,
 #if WITH_BREAK
                            __global const int *word,
 #endif
@@ -12,18 +24,17 @@ __kernel void lattice_pack(int n, __global const int *index, long plane, __globa
 {
     int e = get_global_id(0);
     if (e >= n) return;
-    __global int *to = record + (size_t)e * (size_t)(n_x * x_words + n_v * v_words + WITH_BREAK);
-    for (int k = 0; k < n_x; k++)
-        for (int b = 0; b < x_words; b++) *to++ = x[((size_t)x_in + k * (size_t)plane + (size_t)index[e]) * x_words + b];
-    for (int k = 0; k < n_v; k++)
-        for (int b = 0; b < v_words; b++) *to++ = v[((size_t)v_in + k * (size_t)plane + (size_t)index[e]) * v_words + b];
+    int i = index[e];
+    __global int *to = record + (size_t)e * RECORD;
+    FOR_WORDS (X, k, b) to[k * X_WORDS + b] = x[WORD(X, x_in, k, b, i)];
+    FOR_WORDS (V, k, b) to[X_NUMBERS * X_WORDS + k * V_WORDS + b] = v[WORD(V, v_in, k, b, i)];
 #if WITH_BREAK
-    *to = word[index[e]];
+    to[RECORD - 1] = word[i];
 #endif
+    (void)v;
 }
 
-__kernel void lattice_unpack(int n, __global const int *index, long plane, __global int *restrict x, long x_in, int n_x, int x_words,
-                             __global int *restrict v, long v_in, int n_v, int v_words,
+__kernel void lattice_unpack(int n, __global const int *index, long plane, __global int *restrict x, long x_in, __global int *restrict v, long v_in,
 #if WITH_BREAK
                              __global int *restrict word,
 #endif
@@ -31,12 +42,12 @@ __kernel void lattice_unpack(int n, __global const int *index, long plane, __glo
 {
     int e = get_global_id(0);
     if (e >= n) return;
-    __global const int *from = record + (size_t)e * (size_t)(n_x * x_words + n_v * v_words + WITH_BREAK);
-    for (int k = 0; k < n_x; k++)
-        for (int b = 0; b < x_words; b++) x[((size_t)x_in + k * (size_t)plane + (size_t)index[e]) * x_words + b] = *from++;
-    for (int k = 0; k < n_v; k++)
-        for (int b = 0; b < v_words; b++) v[((size_t)v_in + k * (size_t)plane + (size_t)index[e]) * v_words + b] = *from++;
+    int i = index[e];
+    __global const int *from = record + (size_t)e * RECORD;
+    FOR_WORDS (X, k, b) x[WORD(X, x_in, k, b, i)] = from[k * X_WORDS + b];
+    FOR_WORDS (V, k, b) v[WORD(V, v_in, k, b, i)] = from[X_NUMBERS * X_WORDS + k * V_WORDS + b];
 #if WITH_BREAK
-    word[index[e]] &= *from | ~63;
+    word[i] &= from[RECORD - 1] | ~63;
 #endif
+    (void)v;
 }

@@ -4,16 +4,12 @@
 
 #include "fail.h"
 
-static void set_record(struct launch *launch, const struct lattice_layout *layout, const struct buffer *x, int n_x, size_t x_bytes,
-    const struct buffer *v, int n_v, size_t v_bytes, const struct buffer *word)
+static void bind(
+    struct launch *launch, const struct lattice_layout *layout, const struct buffer *x, const struct buffer *v, const struct buffer *word)
 {
     launch_set_long(launch, "plane", layout->plane);
     launch_bind_buffer(launch, "x", x);
-    launch_set_int(launch, "n_x", n_x);
-    launch_set_int(launch, "x_words", (int)(x_bytes / 4));
     launch_bind_buffer(launch, "v", v);
-    launch_set_int(launch, "n_v", n_v);
-    launch_set_int(launch, "v_words", (int)(v_bytes / 4));
     if (word) launch_bind_buffer(launch, "word", word);
 }
 
@@ -45,8 +41,8 @@ struct lattice_halo *lattice_halo_create(struct device *dev, const struct comm *
     buffer_reserve_staging(dev, &h->recv_staging, (size_t)h->n_recv * h->record);
     h->pack = launch_create(program, "lattice_pack");
     h->unpack = launch_create(program, "lattice_unpack");
-    set_record(h->pack, layout, x, n_x, x_bytes, v, n_v, v_bytes, word);
-    set_record(h->unpack, layout, x, n_x, x_bytes, v, n_v, v_bytes, word);
+    bind(h->pack, layout, x, v, word);
+    bind(h->unpack, layout, x, v, word);
     launch_set_int(h->pack, "n", (int)h->n_send);
     launch_set_int(h->unpack, "n", (int)h->n_recv);
     launch_bind_buffer(h->pack, "index", &h->send);
