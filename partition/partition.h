@@ -37,7 +37,7 @@ struct partition_part {
 struct partition_quality {
     int64_t n;
     double imbalance_sum, imbalance_max, imbalance; /* U: of all, of the last one */
-    double cut_sum;                                 /* interactions between ranks, each counted once */
+    double cut_sum, cut;                            /* interactions between ranks, each counted once */
     double neighbours_sum;                          /* of means over ranks */
     int64_t neighbours_max;
 };

@@ -34,7 +34,8 @@ void partition_quality_add(struct partition_quality *quality, const struct comm 
     quality->imbalance = partition_imbalance(work, share, n);
     quality->imbalance_sum += quality->imbalance;
     if (quality->imbalance > quality->imbalance_max) quality->imbalance_max = quality->imbalance;
-    quality->cut_sum += (double)cut;
+    quality->cut = (double)cut;
+    quality->cut_sum += quality->cut;
     quality->neighbours_sum += (double)neighbours / n;
     free(work);
     free(all);

@@ -6,6 +6,7 @@
 #include "fail.h"
 #include "log.h"
 #include "report.h"
+#include "series.h"
 
 /* Shares of one sum; none is smaller than a 64th of the mean, so that every rank has work to be measured by. */
 enum { SHARES = 1 << 20, SMALLEST = 64 };
@@ -28,6 +29,7 @@ struct balance *balance_create(const struct comm *comm, const struct scene_parti
 void balance_free(struct balance *b)
 {
     if (!b) return;
+    series_free(b->record);
     free(b->share);
     free(b->work);
     free(b->speed);
@@ -124,6 +126,23 @@ void balance_end(struct balance *b, bool is_deal, int64_t n_moved)
     b->dealt_at = b->step;
     b->saving = 0;
     b->is_fresh = true;
+}
+
+void balance_record(struct balance *b, const char *dir, double from)
+{
+    static const struct series_column column[] = {{"imbalance", "1"}, {"work", "1"}, {"cut", "1"}, {"repartitions", "1"}, {"moved", "1"}};
+    enum { COLUMNS = sizeof column / sizeof *column };
+    if (b->comm->n_rank == 1) return;
+    b->record =
+        from < 0 ? series_create(b->comm, dir, "run.balance", column, COLUMNS) : series_resume(b->comm, dir, "run.balance", column, COLUMNS, from);
+}
+
+void balance_write(struct balance *b, double time)
+{
+    double work = 0;
+    if (!b->record) return;
+    for (int r = 0; r < b->comm->n_rank; r++) work += (double)b->work[r];
+    series_add(b->record, time, (double[]){b->quality.imbalance, work, b->quality.cut, (double)b->n_deal, (double)b->n_moved});
 }
 
 void balance_go_on(struct balance *b, const struct timers *timers, int64_t step)

@@ -10,6 +10,7 @@
 
 struct log;
 struct report;
+struct series;
 
 struct balance {
     const struct comm *comm;
@@ -30,6 +31,7 @@ struct balance {
     double cost, cost_sum;   /* [s] of the last deal; of all */
     int64_t n_cost;          /* deals in cost_sum */
     int64_t n_deal, n_moved; /* of the whole run, also before it was taken up again */
+    struct series *record;   /* NULL: none */
 };
 
 struct balance *balance_create(const struct comm *comm, const struct scene_partition *scene);
@@ -45,6 +47,10 @@ bool balance_is_due(const struct balance *b);
 /* Around the deal, if there is one, and the moves of elements. n_moved: those that have changed hands, of all ranks. Collective. */
 void balance_begin(struct balance *b);
 void balance_end(struct balance *b, bool is_deal, int64_t n_moved);
+/* From now on each balance_write adds a line to DIR/run.balance.csv; with several ranks only. from: time [s] up to which the file that is there is
+ * kept, negative: a new one. */
+void balance_record(struct balance *b, const char *dir, double from);
+void balance_write(struct balance *b, double time);
 /* Where steps go on, after `step`: what follows counts as their time. */
 void balance_go_on(struct balance *b, const struct timers *timers, int64_t step);
 /* What the set-up did does not count, but for the parts as they are now. */

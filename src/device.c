@@ -127,6 +127,11 @@ struct device *device_open(const struct comm *comm, const char *choice, bool nee
     free(order);
     free(entry);
 
+    if (comm) { /* a program is built on all ranks or on none */
+        int32_t lacks = !dev->fp64;
+        comm_or_i32(comm, &lacks, 1);
+        dev->fp64 = !lacks;
+    }
     dev->profile = profile;
     dev->n_share = dev->type & CL_DEVICE_TYPE_CPU ? n_node_rank : (n_node_rank + n - 1) / n;
     open_queues(dev);

@@ -145,5 +145,6 @@ void particle_regroup(struct sim *s)
     if (s->wall_contacts) wall_contacts_carry(s->dev, s->wall_contacts, &s->owners->old_index);
     particle_bind(s);
     s->n_rebuild++;
+    balance_write(s->balance, (double)s->step * s->dt);
     balance_go_on(s->balance, &s->timers, s->step);
 }

@@ -3,6 +3,7 @@
 names of tests."""
 import itertools
 import os
+import re
 import shutil
 import subprocess
 
@@ -57,6 +58,26 @@ class Partition(parallel_runs.Case):
             alone = self.found(self.good_run(scene, 1))
             self.check_same(scene, alone, ranks, method="graph", every=10)
 
+    def test_record(self):
+        """The balance over time, with --profile: a line for each build of lists after the first."""
+        run = self.good_run(self.scene("column"), 3, "--profile", *keys(every=37, threshold=0))
+        record = run.record()
+        with open(os.path.join(run.dir, "run.balance.csv")) as file:
+            header, *lines = [line.strip().split(",") for line in file]
+        self.assertEqual(header, ["time [s]", "imbalance [1]", "work [1]", "cut [1]", "repartitions [1]", "moved [1]"])
+        self.assertEqual(len(lines), record["rebuilds"])
+        self.assertEqual(int(lines[-1][4]), record["repartitions"])
+        self.assertLessEqual(max(float(line[1]) for line in lines), record["imbalance"]["max"])
+
+    def unlike_run(self, scene, before, after, *args):
+        """Two ranks, with words of their own before the program and after all others. Returns the record."""
+        folder = os.path.join(self.dir, "unlike")
+        part = [["-n", "1", *before[r], parallel_runs.DEMOCLES, "run", scene, "-o", folder, "--force", "--quiet", *args, *after[r]] for r in range(2)]
+        run = subprocess.run([parallel_runs.MPIRUN, *parallel_runs.MPIRUN_ARGS, *part[0], ":", *part[1]], cwd=self.dir, capture_output=True,
+                             text=True, timeout=parallel_runs.HANG)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        return parallel_runs.Run(folder, 0, "").record()
+
     def slow_kernels(self):
         """Kernels that take longer and do the same."""
         folder = os.path.join(self.dir, "slow")
@@ -77,18 +98,37 @@ class Partition(parallel_runs.Case):
         scene, slow = self.scene("column"), self.slow_kernels()
         alone = self.good_run(scene, 1).record()["digest"]
         for method, rank in (("geometric", 0), ("graph", 1)):
-            args = ["run", scene, "-o", os.path.join(self.dir, "unlike"), "--force", "--quiet",
-                    *keys(method=method, weights="measured", every=37, threshold=0)]
-            part = [["-n", "1", *(["env", f"DEMOCLES_KERNELS={slow}"] if r == rank else []), parallel_runs.DEMOCLES, *args] for r in range(2)]
             with self.subTest(method=method, slow=rank):
-                run = subprocess.run([parallel_runs.MPIRUN, *parallel_runs.MPIRUN_ARGS, *part[0], ":", *part[1]], cwd=self.dir,
-                                     capture_output=True, text=True, timeout=parallel_runs.HANG)
-                self.assertEqual(run.returncode, 0, run.stderr)
-                record = parallel_runs.Run(args[3], 0, "").record()
+                env = [["env", f"DEMOCLES_KERNELS={slow}"] if r == rank else [] for r in range(2)]
+                record = self.unlike_run(scene, env, [[], []], *keys(method=method, weights="measured", every=37, threshold=0))
                 ranks = record["partition"]["ranks"]
                 self.assertEqual(record["digest"], alone)
                 self.assertLess(ranks[rank]["share"], 0.4)
                 self.assertLess(ranks[rank]["work"], 0.8 * ranks[1 - rank]["work"])
+
+    def test_implementations(self):
+        """One rank on pocl, one on Mesa's rusticl, which has no double precision: the bits of either alone, and the slower one gets less to do."""
+        os.environ["RUSTICL_ENABLE"] = "llvmpipe"
+        name = ["pthread", "llvmpipe"]
+        listed = subprocess.run([parallel_runs.DEMOCLES, "devices"], capture_output=True, text=True, check=True).stdout
+        index = [re.search(rf"^(\d+:\d+)\s+{kind}", listed, re.M) for kind in name]
+        if not all(index):
+            self.skipTest("there are no two implementations of OpenCL, pocl and rusticl")
+        device = [["--device", found[1]] for found in index]
+        with open(self.scene("column")) as file:
+            content = yaml.safe_load(file)
+        content.pop("measure", None)  # energies are summed in double precision
+        scene = os.path.join(self.dir, "bare.yaml")
+        with open(scene, "w") as file:
+            yaml.safe_dump(content, file)
+        steps = ["--precision", "single", "--steps", "150"]
+        digests = {self.good_run(scene, 1, *steps, *which).record()["digest"] for which in device}
+        record = self.unlike_run(scene, [[], []], device, *steps, *keys(weights="measured", every=37, threshold=0))
+        self.assertEqual(digests, {record["digest"]})
+        for part, kind in zip(record["devices"], name):
+            self.assertIn(kind, part["name"])
+        ranks = record["partition"]["ranks"]
+        self.assertLess(ranks[1]["work"], ranks[0]["work"])
 
     def test_lattice(self):
         scene = os.path.join(self.dir, "lattice.yaml")
