@@ -13,12 +13,12 @@ struct ghosts *ghosts_create(
     g->comm = comm;
     g->features = features;
     memcpy(g->period, period, sizeof g->period);
-    struct buffer *all[] = {&g->index, &g->pick, &g->packed, &g->send_staging, &g->recv_staging};
-    static const char *const name[] = {"ghost index", "ghost pick", "ghost pack", "ghost send", "ghost receive"};
-    for (int i = 0; i < 5; i++) {
-        buffer_init(all[i], name[i]);
-        if (i < 3) buffer_reserve(dev, all[i], 64);
-    }
+    static const char *const name[] = {"ghost pack", "ghosts arrived", "ghost send", "ghost receive"};
+    exchange_init(&g->exchange, name);
+    buffer_init(&g->index, "ghost index");
+    buffer_init(&g->pick, "ghost pick");
+    buffer_reserve(dev, &g->index, 64);
+    buffer_reserve(dev, &g->pick, 64);
     g->select = launch_create(lists, "select_ghosts");
     g->compact = launch_create(lists, "record_select");
     g->gather = launch_create(lists, "record_gather");
@@ -31,33 +31,13 @@ struct ghosts *ghosts_create(
 void ghosts_free(struct device *dev, struct ghosts *g)
 {
     if (!g) return;
-    ghosts_settle(dev, g);
-    halo_free(g->halo);
-    struct buffer *all[] = {&g->index, &g->pick, &g->packed, &g->send_staging, &g->recv_staging};
-    for (int i = 0; i < 5; i++) buffer_free(dev, all[i]);
+    exchange_free(dev, &g->exchange);
+    buffer_free(dev, &g->index);
+    buffer_free(dev, &g->pick);
     launch_free(g->select);
     launch_free(g->compact);
     launch_free(g->gather);
     free(g);
-}
-
-struct halo_traffic ghosts_sent(const struct ghosts *g)
-{
-    struct halo_traffic sent = g->before;
-    if (g->halo) {
-        sent.bytes += g->halo->sent.bytes;
-        sent.messages += g->halo->sent.messages;
-    }
-    return sent;
-}
-
-void ghosts_settle(struct device *dev, struct ghosts *g)
-{
-    if (g->halo) halo_end(g->halo);
-    exchange_release(&g->written_event);
-    exchange_release(&g->read_event);
-    exchange_release(&g->packed_event);
-    device_finish(dev);
 }
 
 /* What a rank tells the others about the elements that it owns. */
@@ -112,17 +92,18 @@ static int64_t select_for(
 /* Sends rows of `from` picked by g->index to their neighbours and stores what comes in at row n_owned of it. */
 static void exchange_rows(struct device *dev, struct ghosts *g, const struct particles *p, struct buffer *from, size_t bytes)
 {
-    char *send = fail_alloc((size_t)g->n_send * bytes), *recv = fail_alloc((size_t)g->n_recv * bytes);
-    buffer_reserve(dev, &g->packed, (size_t)g->n_send * bytes);
-    launch_set_int(g->gather, "n", (int)g->n_send);
+    struct exchange *x = &g->exchange;
+    char *send = fail_alloc((size_t)x->n_send * bytes), *recv = fail_alloc((size_t)x->n_recv * bytes);
+    buffer_reserve(dev, &x->packed, (size_t)x->n_send * bytes);
+    launch_set_int(g->gather, "n", (int)x->n_send);
     launch_set_int(g->gather, "words", (int)(bytes / 4));
     launch_bind_buffer(g->gather, "index", &g->index);
     launch_bind_buffer(g->gather, "from", from);
-    launch_bind_buffer(g->gather, "to", &g->packed);
-    launch_run(g->gather, dev->compute, g->n_send, 0, NULL, NULL);
-    buffer_read(dev, &g->packed, 0, (size_t)g->n_send * bytes, send);
-    halo_exchange(g->halo, send, recv, bytes);
-    buffer_write(dev, from, (size_t)p->n_owned * bytes, (size_t)g->n_recv * bytes, recv);
+    launch_bind_buffer(g->gather, "to", &x->packed);
+    launch_run(g->gather, dev->compute, x->n_send, 0, NULL, NULL);
+    buffer_read(dev, &x->packed, 0, (size_t)x->n_send * bytes, send);
+    halo_exchange(x->halo, send, recv, bytes);
+    buffer_write(dev, from, (size_t)p->n_owned * bytes, (size_t)x->n_recv * bytes, recv);
     free(send);
     free(recv);
 }
@@ -132,20 +113,20 @@ static void choose(struct device *dev, struct ghosts *g, struct scan *scan, cons
 {
     const struct comm *comm = g->comm;
     cl_int *index = NULL;
+    int64_t n_send = 0;
     struct buffer piece;
     buffer_init(&piece, "ghost piece");
-    g->n_send = 0;
     buffer_reserve(dev, &g->pick, ((size_t)p->n_owned + 1) * sizeof(cl_int));
     for (int r = 0; r < comm->n_rank; r++) {
         count_to[r] = 0;
         if (r == comm->rank || !may_meet(g, &all[comm->rank], &all[r])) continue;
         count_to[r] = select_for(dev, g, scan, p, r, &all[r], &piece);
-        index = fail_realloc(index, (size_t)(g->n_send + count_to[r]) * sizeof *index);
-        buffer_read(dev, &piece, 0, (size_t)count_to[r] * sizeof *index, index + g->n_send);
-        g->n_send += count_to[r];
+        index = fail_realloc(index, (size_t)(n_send + count_to[r]) * sizeof *index);
+        buffer_read(dev, &piece, 0, (size_t)count_to[r] * sizeof *index, index + n_send);
+        n_send += count_to[r];
     }
-    buffer_reserve(dev, &g->index, (size_t)g->n_send * sizeof(cl_int));
-    buffer_write(dev, &g->index, 0, (size_t)g->n_send * sizeof(cl_int), index);
+    buffer_reserve(dev, &g->index, (size_t)n_send * sizeof(cl_int));
+    buffer_write(dev, &g->index, 0, (size_t)n_send * sizeof(cl_int), index);
     buffer_free(dev, &piece);
     free(index);
 }
@@ -166,50 +147,24 @@ void ghosts_plan(
     launch_bind_buffer(g->select, "cut", &owners->cut);
     launch_bind_buffer(g->select, "domain", &owners->domain);
     choose(dev, g, scan, p, all, count_to);
-    g->before = ghosts_sent(g);
-    halo_free(g->halo);
-    g->halo = halo_create(comm, count_to);
-    g->n_recv = g->halo->recv_begin[g->halo->n_recv];
-    p->n_ghost = g->n_recv;
+    exchange_plan(&g->exchange, comm, count_to);
+    p->n_ghost = g->exchange.n_recv;
     particles_reserve(dev, p, g->features, p->n_owned + p->n_ghost, p->n_owned);
     exchange_rows(dev, g, p, &p->field[FIELD_GID].now, p->field[FIELD_GID].bytes);
     exchange_rows(dev, g, p, &p->reach, particles_preal(g->features));
-    g->record = p->field[FIELD_STATE].bytes;
-    exchange_rows(dev, g, p, &p->field[FIELD_STATE].now, g->record);
-    buffer_reserve_staging(dev, &g->send_staging, (size_t)g->n_send * g->record);
-    buffer_reserve_staging(dev, &g->recv_staging, (size_t)g->n_recv * g->record);
-    buffer_reserve(dev, &g->packed, (size_t)g->n_send * g->record);
-    halo_bind(g->halo, g->send_staging.host, g->recv_staging.host, g->record);
-    launch_set_int(g->gather, "n", (int)g->n_send);
-    launch_set_int(g->gather, "words", (int)(g->record / 4));
-    launch_bind_buffer(g->gather, "from", &p->field[FIELD_STATE].now);
+    exchange_rows(dev, g, p, &p->field[FIELD_STATE].now, p->field[FIELD_STATE].bytes); /* g->gather goes on with these */
+    exchange_bind(dev, &g->exchange, p->field[FIELD_STATE].bytes, false);
     free(count_to);
     free(all);
 }
 
-void ghosts_begin(struct device *dev, struct ghosts *g, const struct particles *p, struct timers *timers)
+void ghosts_begin(struct device *dev, struct ghosts *g, struct timers *timers)
 {
-    if (g->comm->n_rank == 1) return;
-    exchange_settle(dev, g->halo, timers);
-    launch_bind_buffer(g->gather, "from", &p->field[FIELD_STATE].now);
-    launch_run(g->gather, dev->compute, g->n_send, 0, NULL, &g->packed_event);
-    check_cl(clFlush(dev->compute));
-    buffer_read_begin(
-        dev, exchange_queue(dev), &g->packed, 0, (size_t)g->n_send * g->record, g->send_staging.host, 1, &g->packed_event, &g->read_event);
-    check_cl(clFlush(exchange_queue(dev)));
-    exchange_release(&g->written_event); /* long done: the receive staging is free */
-    exchange_post(dev, g->halo, timers);
+    if (g->comm->n_rank > 1) exchange_begin(dev, &g->exchange, g->gather, timers);
 }
 
 const cl_event *ghosts_swap(struct device *dev, struct ghosts *g, struct particles *p, cl_event *most, struct timers *timers)
 {
     if (g->comm->n_rank == 1) return NULL;
-    exchange_send(dev, g->halo, g->read_event, timers);
-    exchange_receive(dev, g->halo, most, timers);
-    buffer_write_begin(dev, dev->copy, &p->field[FIELD_STATE].now, (size_t)p->n_owned * g->record, (size_t)g->n_recv * g->record,
-        g->recv_staging.host, 0, NULL, &g->written_event);
-    check_cl(clFlush(dev->copy));
-    exchange_release(&g->read_event);
-    exchange_release(&g->packed_event);
-    return &g->written_event;
+    return exchange_swap(dev, &g->exchange, &p->field[FIELD_STATE].now, (size_t)p->n_owned * g->exchange.record, most, timers);
 }

@@ -6,7 +6,6 @@
 #ifndef DEMOCLES_GHOSTS_H
 #define DEMOCLES_GHOSTS_H
 
-#include "../comm/halo.h"
 #include "exchange.h"
 #include "owners.h"
 
@@ -14,15 +13,9 @@ struct ghosts {
     const struct comm *comm;
     const struct features *features;
     double period[3];
-    struct halo *halo;
-    int64_t n_send, n_recv;
-    size_t record;             /* bytes of one state record */
-    struct buffer index, pick; /* send order; scan scratch */
-    struct buffer packed;      /* [n_send] records */
-    struct buffer send_staging, recv_staging;
+    struct exchange exchange;  /* of state records */
+    struct buffer index, pick; /* [exchange.n_send] send order; scan scratch */
     struct launch *select, *compact, *gather;
-    struct halo_traffic before; /* sent under earlier plans */
-    cl_event packed_event, read_event, written_event;
 };
 
 struct ghosts *ghosts_create(
@@ -35,13 +28,9 @@ void ghosts_plan(
     struct device *dev, struct ghosts *g, const struct owners *owners, struct scan *scan, struct particles *p, const struct cells_bounds *own);
 
 /* Enqueues packing of what others need and its read-back, posts receives. */
-void ghosts_begin(struct device *dev, struct ghosts *g, const struct particles *p, struct timers *timers);
-/* Sends, waits for arrivals, enqueues their copy to the device. `most`: see exchange_receive. Returns the event that kernels on ghosts have to wait
+void ghosts_begin(struct device *dev, struct ghosts *g, struct timers *timers);
+/* Sends, waits for arrivals, enqueues their copy to the device. `most`: see exchange_swap. Returns the event that kernels on ghosts have to wait
  * for (borrowed), NULL if there is nothing to wait for. */
 const cl_event *ghosts_swap(struct device *dev, struct ghosts *g, struct particles *p, cl_event *most, struct timers *timers);
-/* By this rank within steps since the start. */
-struct halo_traffic ghosts_sent(const struct ghosts *g);
-/* Before the plan or the staging buffers change: nothing is under way afterwards. */
-void ghosts_settle(struct device *dev, struct ghosts *g);
 
 #endif

@@ -159,7 +159,7 @@ struct lattice *lattice_create(struct device *dev, const struct comm *comm, cons
     if (comm->n_rank > 1)
         l->halo = lattice_halo_create(dev, comm, l->program, l->layout, &l->x, LATTICE_X(l->features.turn), lattice_x_bytes(l), &l->v,
             l->features.link_damping ? LATTICE_V : 0, lattice_v_bytes(l), l->features.breakage ? &l->word : NULL);
-    l->part = lattice_owners_part(cells, owner, comm->rank, l->halo ? l->halo->halo->n_send : 0);
+    l->part = lattice_owners_part(cells, owner, comm->rank, l->halo ? l->halo->exchange.halo->n_send : 0);
     free(owner);
     if (l->features.breakage) l->breakage = lattice_break_create(l, cells);
     first_state(l, cells);

@@ -5,16 +5,11 @@
 
 #include "exchange.h"
 #include "lattice_layout.h"
-#include "launch.h"
 
 struct lattice_halo {
-    const struct comm *comm;
-    struct halo *halo;
-    int64_t n_send, n_recv;
-    size_t record; /* bytes */
-    struct buffer send, recv, packed, arrived, send_staging, recv_staging;
+    struct exchange exchange;
+    struct buffer send, recv; /* places of the records */
     struct launch *pack, *unpack;
-    cl_event packed_event, read_event, written_event;
 };
 
 /* n_x, n_v: numbers of each cell that travel, of so many bytes each. x, v: the buffers that hold them; word: that of the cells' words where links
@@ -26,7 +21,7 @@ void lattice_halo_free(struct device *dev, struct lattice_halo *h);
 
 /* Packs from the sets of planes that begin with numbers x_in and v_in, reads back, posts receives. */
 void lattice_halo_begin(struct device *dev, struct lattice_halo *h, int64_t x_in, int64_t v_in, struct timers *timers);
-/* After the interior's kernels are enqueued: sends, waits for arrivals, enqueues what puts them in place. `most`: see exchange_receive. */
+/* After the interior's kernels are enqueued: sends, waits for arrivals, enqueues what puts them in place. `most`: see exchange_swap. */
 void lattice_halo_swap(struct device *dev, struct lattice_halo *h, cl_event *most, struct timers *timers);
 
 #endif

@@ -201,9 +201,9 @@ static void count(const struct sim *s, struct step_counts *counts)
     for (int64_t i = 0; i < l->layout->n_owned; i++)
         for (int face = 1; face < 6; face += 2) counts->n_interaction += s->solid->cells->bits[l->layout->gid[i]] >> face & 1;
     if (!l->halo) return;
-    counts->sent = l->halo->halo->sent;
-    counts->n_neighbour = l->halo->halo->n_send;
-    counts->n_boundary = l->halo->n_send;
+    counts->sent = exchange_sent(&l->halo->exchange);
+    counts->n_neighbour = l->halo->exchange.halo->n_send;
+    counts->n_boundary = l->halo->exchange.n_send;
 }
 
 static void report_features(const struct sim *s, struct report *r)

@@ -119,13 +119,13 @@ void particle_lists(struct sim *s)
     s->built_at = s->step;
     const struct pair_list *l = &s->pairs->now;
     int64_t n_pair = l->n_interior + l->n_boundary, n_wall = s->wall_contacts ? s->wall_contacts->now.n : 0;
-    int64_t n_neighbour = s->ghosts->halo ? s->ghosts->halo->n_send : 0;
-    balance_add(s->balance, (struct partition_part){p->n_owned + n_pair + n_wall, n_pair - l->n_own, n_neighbour});
+    const struct halo *halo = s->ghosts->exchange.halo;
+    balance_add(s->balance, (struct partition_part){p->n_owned + n_pair + n_wall, n_pair - l->n_own, halo ? halo->n_send : 0});
 }
 
 void particle_regroup(struct sim *s)
 {
-    ghosts_settle(s->dev, s->ghosts);
+    exchange_settle(s->dev, &s->ghosts->exchange);
     balance_look(s->balance, &s->timers, s->step);
     struct cells_bounds now = cells_bounds(s->dev, s->cells, s->particles, s->particles->n_owned);
     int32_t lost = now.has_nan;

@@ -47,8 +47,8 @@ int64_t particle_owned(const struct sim *s)
 
 void particle_count(const struct sim *s, struct step_counts *counts)
 {
-    const struct halo *halo = s->ghosts->halo;
-    *counts = (struct step_counts){s->pairs->now.n_own, ghosts_sent(s->ghosts), halo ? halo->n_send : 0, s->ghosts->n_send};
+    const struct exchange *x = &s->ghosts->exchange;
+    *counts = (struct step_counts){s->pairs->now.n_own, exchange_sent(x), x->halo ? x->halo->n_send : 0, x->n_send};
 }
 
 void particle_report_features(const struct sim *s, struct report *r)

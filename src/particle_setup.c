@@ -207,7 +207,7 @@ void particle_free(struct sim *s)
 {
     struct launch *launch[] = {s->select_room, s->pair_force, s->wall_force, s->gather, s->kick_drift};
     struct program *program[] = {s->program_lists, s->program_pair, s->program_wall, s->program_body};
-    if (s->ghosts) ghosts_settle(s->dev, s->ghosts);
+    if (s->ghosts) exchange_settle(s->dev, &s->ghosts->exchange);
     limit_free(s->dev, s->limit);
     energy_free(s->dev, s->energy);
     ghosts_free(s->dev, s->ghosts);

@@ -45,7 +45,7 @@ void particle_forces(struct sim *s)
     const struct pair_list *l = &s->pairs->now;
     cl_event most = NULL;
     if (s->wall_contacts) wall_contacts_set_step(s->dev, s->wall_contacts, s->step);
-    ghosts_begin(s->dev, s->ghosts, s->particles, &s->timers);
+    ghosts_begin(s->dev, s->ghosts, &s->timers);
     launch_interior(s, &most);
     launch_walls(s);
     device_flush(s->dev);

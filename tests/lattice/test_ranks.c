@@ -35,7 +35,7 @@ static uint64_t digest(
     n_nan = lattice_digest(l, &value);
     CHECK(n_nan == 0);
     if (who->n_rank > 1 && cells->n > 200) {
-        int64_t sent = l->halo->halo->sent.bytes;
+        int64_t sent = l->halo->exchange.halo->sent.bytes;
         comm_sum_i64(who, &sent, 1);
         CHECK(sent > 0);
     }
