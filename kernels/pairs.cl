@@ -5,23 +5,8 @@
 #include "types.h"
 #include "incidence.h"
 #include "remember.h"
+#include "row_find.h"
 #define PAIR_ALIGN 64
-
-LAW int first_above(__global const long *gid, int begin, int end, long own)
-{
-    while (begin < end) {
-        int mid = begin + (end - begin) / 2;
-        if (gid[mid] > own) end = mid;
-        else begin = mid + 1;
-    }
-    return begin;
-}
-
-LAW int find(__global const long *gid, int begin, int end, long wanted)
-{
-    int k = first_above(gid, begin, end, wanted) - 1;
-    return k >= begin && gid[k] == wanted ? k : -1;
-}
 
 /* split [n_all]: first up entry of the row; interior, boundary [n_all + 1]: up entries, one of both 0; incidence
  * [n_owned + 1]: length of the row in the gather's list. */
@@ -42,18 +27,17 @@ void pair_count(int n_owned, int n_all, __global const long *gid, __global const
     if (e < n_owned) incidence[e] = (end - begin + INCIDENCE_ALIGN - 1) / INCIDENCE_ALIGN * INCIDENCE_ALIGN;
 }
 
-/* interior, boundary: scanned. up_begin, up_count [n_all]; pair_i, pair_j [n_pair]. first_boundary: interior pairs rounded up to PAIR_ALIGN. */
+/* interior, boundary: scanned. up_begin [n_all]; pair_i, pair_j [n_pair]. first_boundary: interior pairs rounded up to PAIR_ALIGN. */
 __kernel __attribute__((reqd_work_group_size(64, 1, 1)))
 void pair_fill(int n_all, int first_boundary, __global const int *row_begin, __global const int *row, __global const int *split,
-               __global const int *interior, __global const int *boundary, __global int *up_begin, __global int *up_count,
-               __global int *pair_i, __global int *pair_j)
+               __global const int *interior, __global const int *boundary, __global int *up_begin, __global int *pair_i,
+               __global int *pair_j)
 {
     int e = get_global_id(0);
     if (e >= n_all) return;
     int n = row_begin[e + 1] - split[e], is_interior = interior[e + 1] > interior[e];
     int p = is_interior ? interior[e] : first_boundary + boundary[e];
     up_begin[e] = p;
-    up_count[e] = n;
     for (int k = 0; k < n; k++) {
         pair_i[p + k] = e;
         pair_j[p + k] = row[split[e] + k];
@@ -78,13 +62,11 @@ void pair_link(int n_owned, int blank, __global const long *gid, __global const 
 }
 
 /* Histories. The owned end of each pair knows where it was in the old lists (old_index: its old number, or n_old + its place among the arrivals,
- * whose
- * contacts came along in the arrival_ arrays); there the pair is found by the partner's global id. Pairs that are new keep the zeros they were
- * given. A history is
- * kept in the orientation lower to higher id, so it needs no turning.
- * width planes of real words (size word_count 4-byte words each) and one int state per pair. */
+ * whose contacts came along in the arrival_ arrays); there the pair is found by the partner's global id. Pairs that are new keep the zeros they were
+ * given. A history is kept in the orientation lower to higher id, so it needs no turning. Pairs p < end; those from n_interior to first_boundary are
+ * none. width planes of real and one int state per pair. */
 __kernel __attribute__((reqd_work_group_size(64, 1, 1)))
-void pair_carry(int n_owned, int n_all, int n_old, __global const long *gid, __global const int *up_begin, __global const int *up_count,
+void pair_carry(int end, int n_interior, int first_boundary, int n_owned, int n_old, __global const long *gid, __global const int *pair_i,
                 __global const int *pair_j, __global const int *old_index,
                 __global const int *old_row_begin, __global const long *old_row_gid, __global const int *old_incidence_begin,
                 __global const int *old_incidence,
@@ -93,24 +75,21 @@ void pair_carry(int n_owned, int n_all, int n_old, __global const long *gid, __g
                 int width, int capacity, int old_capacity, int arrival_capacity,
                 __global const int *old_state, __global const real *old_history, __global int *state, __global real *history)
 {
-    int e = get_global_id(0);
-    if (e >= n_all) return;
-    for (int p = up_begin[e]; p < up_begin[e] + up_count[e]; p++) {
-        int j = pair_j[p], own = e < n_owned ? e : j;
-        long partner = e < n_owned ? gid[j] : gid[e];
-        int old = old_index[own];
-        if (old < n_old) {
-            int k = find(old_row_gid, old_row_begin[old], old_row_begin[old + 1], partner);
-            if (k < 0) continue;
-            int q = old_incidence[old_incidence_begin[old] + k - old_row_begin[old]] >> 1;
-            state[p] = old_state[q];
-            for (int c = 0; c < width; c++) history[(size_t)c * capacity + p] = old_history[(size_t)c * old_capacity + q];
-        } else {
-            int a = old - n_old, k = find(arrival_gid, arrival_begin[a], arrival_begin[a + 1], partner);
-            if (k < 0) continue;
-            state[p] = arrival_state[k];
-            for (int c = 0; c < width; c++) history[(size_t)c * capacity + p] = arrival_history[(size_t)c * arrival_capacity + k];
-        }
+    int p = get_global_id(0);
+    if (p >= end || (p >= n_interior && p < first_boundary)) return;
+    int i = pair_i[p], j = pair_j[p], own = i < n_owned ? i : j, old = old_index[own];
+    long partner = gid[i + j - own];
+    if (old < n_old) {
+        int k = find(old_row_gid, old_row_begin[old], old_row_begin[old + 1], partner);
+        if (k < 0) return;
+        int q = old_incidence[old_incidence_begin[old] + k - old_row_begin[old]] >> 1;
+        state[p] = old_state[q];
+        for (int c = 0; c < width; c++) history[(size_t)c * capacity + p] = old_history[(size_t)c * old_capacity + q];
+    } else {
+        int a = old - n_old, k = find(arrival_gid, arrival_begin[a], arrival_begin[a + 1], partner);
+        if (k < 0) return;
+        state[p] = arrival_state[k];
+        for (int c = 0; c < width; c++) history[(size_t)c * capacity + p] = arrival_history[(size_t)c * arrival_capacity + k];
     }
 }
 

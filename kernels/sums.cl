@@ -42,9 +42,9 @@ void sums_elements(int n, __global const preal *position, __global const real *m
 }
 
 /* LEDGER_WIDTH sums over contacts; all but the elastic energy begin anew afterwards. The n contacts are 0 <= p < n_first, and those from `second` on.
- * element [capacity]: who counts the contact; below n_owned it is us. */
+ * element [capacity]: contacts count where this is below n_lower. */
 __kernel __attribute__((reqd_work_group_size(SUMS_GROUP, 1, 1)))
-void sums_ledger(int n, int n_first, int second, int n_owned, int capacity, __global const int *element, __global double *ledger,
+void sums_ledger(int n, int n_first, int second, int n_lower, int capacity, __global const int *element, __global double *ledger,
                  __global long *partial)
 {
     __local long part[LEDGER_WIDTH * SUMS_WIDTH * SUMS_GROUP];
@@ -52,7 +52,7 @@ void sums_ledger(int n, int n_first, int second, int n_owned, int capacity, __gl
     for (int k = 0; k < LEDGER_WIDTH; k++) sum[k] = sums_zero();
     for (int i = SUMS_FIRST; i < n; i += SUMS_STRIDE) {
         int p = i < n_first ? i : i - n_first + second;
-        if (element[p] >= n_owned) continue;
+        if (element[p] >= n_lower) continue;
         for (int k = 0; k < LEDGER_WIDTH; k++) {
             size_t at = (size_t)k * capacity + p;
             sums_add(&sum[k], ledger[at]);
@@ -78,14 +78,14 @@ LAW int sums_found(__global const long *sorted, int n, long key)
 
 /* Elastic energy in contacts of elements that are gone: gone [n_gone] their ids, ascending. element, partner: numbers into gid. The rest as above. */
 __kernel __attribute__((reqd_work_group_size(SUMS_GROUP, 1, 1)))
-void sums_gone(int n, int n_first, int second, int n_owned, int capacity, __global const int *element, __global const int *partner,
+void sums_gone(int n, int n_first, int second, int n_lower, int capacity, __global const int *element, __global const int *partner,
                __global const long *gid, int n_gone, __global const long *gone, __global const double *ledger, __global long *partial)
 {
     __local long part[SUMS_WIDTH * SUMS_GROUP];
     struct sum sum = sums_zero();
     for (int i = SUMS_FIRST; i < n; i += SUMS_STRIDE) {
         int p = i < n_first ? i : i - n_first + second, e = element[p];
-        if (e >= n_owned) continue;
+        if (e >= n_lower) continue;
         long a = gid[e], b = gid[partner[p]];
         int at_a = sums_found(gone, n_gone, a), at_b = sums_found(gone, n_gone, b);
         if ((at_a < n_gone && gone[at_a] == a) || (at_b < n_gone && gone[at_b] == b))

@@ -197,12 +197,13 @@ static void report_ranks(const struct balance *b, struct report *r, double busy,
 void balance_report(const struct balance *b, struct report *r, const struct timers *timers, int64_t n_step, int64_t n_element)
 {
     double steps = timers->total[TIMER_LOOP] - timers->total[TIMER_REGROUP], step = n_step > 0 ? steps / (double)n_step : 0;
-    static const char *const weights[] = {"interactions", "measured"};
+    static const char *const weights[] = {"interactions", "measured"}, *const boundary[] = {"both", "assigned"};
     const struct partition_quality *q = &b->quality;
     double n = q->n > 0 ? (double)q->n : 1, cost = b->n_cost > 0 ? b->cost_sum / (double)b->n_cost : 0;
     report_begin(r, "partition");
     report_text(r, "method", method_name[b->scene->method]);
     report_text(r, "weights", weights[b->scene->weights]);
+    report_text(r, "boundary", boundary[b->scene->boundary]);
     report_number(r, "cut", q->cut_sum / n);
     report_begin(r, "neighbours");
     report_number(r, "mean", q->neighbours_sum / n);

@@ -86,15 +86,15 @@ static void sum_elements(struct sim *s, struct sum sum[SUMS_ELEMENT])
     integer_sums_run(s->dev, k, &s->energy->partial, SUMS_ELEMENT, sum);
 }
 
-/* Which contacts a kernel goes over: the pairs of which we own the lower element, or all candidates at walls. */
+/* Which contacts a kernel goes over: the pairs that count on this rank, or all candidates at walls. */
 static void set_contacts(struct launch *k, const struct sim *s, bool wall)
 {
     const struct pair_list *l = &s->pairs->now;
     const struct wall_list *w = wall ? &s->wall_contacts->now : NULL;
-    launch_set_int(k, "n", (int)(w ? w->n : l->n_interior + l->n_boundary));
+    launch_set_int(k, "n", (int)(w ? w->n : l->n_interior + l->n_mine));
     launch_set_int(k, "n_first", (int)(w ? w->n : l->n_interior));
     launch_set_int(k, "second", (int)(w ? 0 : l->first_boundary));
-    launch_set_int(k, "n_owned", (int)(w ? w->n_owned : l->n_owned));
+    launch_set_int(k, "n_lower", (int)(w ? w->n_owned : l->n_lower));
     launch_set_int(k, "capacity", (int)(w ? w->capacity : l->capacity));
     launch_bind_buffer(k, "element", w ? &w->element : &l->pair_i);
     launch_bind_buffer(k, "ledger", w ? &s->wall_contacts->ledger : &s->pairs->ledger);
@@ -152,7 +152,7 @@ static int64_t share_gone(struct sim *s)
     return n;
 }
 
-/* Springs of contacts of which an element has left on any rank; the rank of the lower element counts, as it does otherwise. */
+/* Springs of contacts of which an element has left on any rank, each where it counts otherwise too. */
 static void remove_springs(struct sim *s, int64_t n_gone)
 {
     struct energy *e = s->energy;

@@ -5,19 +5,19 @@
 
 #include "fail.h"
 
-enum { PAIR_ALIGN = 64, ROW_FOUND = 32, LIST_BUFFERS = 12 }; /* the first two as in kernels/pairs.cl, rows.cl */
+enum { PAIR_ALIGN = 64, ROW_FOUND = 32, LIST_BUFFERS = 11 }; /* the first two as in kernels/pairs.cl, rows.cl */
 
 static void list_buffers(struct pair_list *l, struct buffer *all[LIST_BUFFERS])
 {
-    struct buffer *b[LIST_BUFFERS] = {&l->row_begin, &l->row, &l->row_gid, &l->split, &l->up_begin, &l->up_count, &l->incidence_begin, &l->incidence,
-        &l->pair_i, &l->pair_j, &l->state, &l->history};
+    struct buffer *b[LIST_BUFFERS] = {&l->row_begin, &l->row, &l->row_gid, &l->split, &l->up_begin, &l->incidence_begin, &l->incidence, &l->pair_i,
+        &l->pair_j, &l->state, &l->history};
     memcpy(all, b, sizeof b);
 }
 
 static void list_init(struct device *dev, struct pair_list *l)
 {
-    static const char *const name[LIST_BUFFERS] = {"row begin", "rows", "row gids", "row split", "up begin", "up count", "incidence begin",
-        "incidence", "pair i", "pair j", "pair state", "pair history"};
+    static const char *const name[LIST_BUFFERS] = {
+        "row begin", "rows", "row gids", "row split", "up begin", "incidence begin", "incidence", "pair i", "pair j", "pair state", "pair history"};
     struct buffer *all[LIST_BUFFERS];
     list_buffers(l, all);
     for (int i = 0; i < LIST_BUFFERS; i++) {
@@ -103,8 +103,8 @@ static void count_pairs(struct device *dev, struct pairs *pairs, struct scan *sc
 {
     struct pair_list *l = &pairs->now;
     size_t per_element = ((size_t)l->n_all + 1) * sizeof(cl_int);
-    struct buffer *counted[] = {&l->split, &l->up_begin, &l->up_count, &pairs->interior, &pairs->boundary};
-    for (int i = 0; i < 5; i++) buffer_reserve(dev, counted[i], per_element);
+    struct buffer *counted[] = {&l->split, &l->up_begin, &pairs->interior, &pairs->boundary};
+    for (int i = 0; i < 4; i++) buffer_reserve(dev, counted[i], per_element);
     buffer_reserve(dev, &l->incidence_begin, ((size_t)l->n_owned + 1) * sizeof(cl_int));
     launch_set_int(pairs->count, "n_owned", (int)l->n_owned);
     launch_set_int(pairs->count, "n_all", (int)l->n_all);
@@ -118,7 +118,8 @@ static void count_pairs(struct device *dev, struct pairs *pairs, struct scan *sc
     launch_bind_buffer(pairs->count, "incidence", &l->incidence_begin);
     launch_run(pairs->count, dev->compute, l->n_all, 0, NULL, NULL);
     l->n_interior = scan_total(dev, scan, &pairs->interior, l->n_all);
-    l->n_boundary = scan_total(dev, scan, &pairs->boundary, l->n_all);
+    l->n_boundary = l->n_mine = scan_total(dev, scan, &pairs->boundary, l->n_all);
+    l->n_lower = l->n_owned;
     cl_int own; /* rows of owned elements come first */
     buffer_read(dev, &pairs->boundary, (size_t)l->n_owned * sizeof own, sizeof own, &own);
     l->n_own = l->n_interior + own;
@@ -165,7 +166,6 @@ static void fill_pairs(struct device *dev, struct pairs *pairs, const struct par
     }
     launch_bind_buffer(pairs->fill, "interior", &pairs->interior);
     launch_bind_buffer(pairs->fill, "boundary", &pairs->boundary);
-    launch_bind_buffer(pairs->fill, "up_count", &l->up_count);
     launch_bind_buffer(pairs->fill, "pair_i", &l->pair_i);
     launch_bind_buffer(pairs->fill, "pair_j", &l->pair_j);
     launch_run(pairs->fill, dev->compute, l->n_all, 0, NULL, NULL);
@@ -199,7 +199,9 @@ void pairs_carry(struct device *dev, struct pairs *pairs, const struct particles
     struct launch *k = pairs->carry;
     if (!pairs->layout.remembers) return;
     launch_set_int(k, "n_owned", (int)l->n_owned);
-    launch_set_int(k, "n_all", (int)l->n_all);
+    launch_set_int(k, "n_interior", (int)l->n_interior);
+    launch_set_int(k, "first_boundary", (int)l->first_boundary);
+    launch_set_int(k, "end", (int)(l->first_boundary + l->n_boundary));
     launch_set_int(k, "n_old", (int)o->n_owned);
     launch_set_int(k, "width", pairs->layout.history);
     launch_set_int(k, "capacity", (int)l->capacity);
@@ -208,11 +210,11 @@ void pairs_carry(struct device *dev, struct pairs *pairs, const struct particles
     const struct {
         const char *name;
         const struct buffer *buffer;
-    } bind[] = {{"gid", &p->field[FIELD_GID].now}, {"up_begin", &l->up_begin}, {"up_count", &l->up_count}, {"pair_j", &l->pair_j},
-        {"old_index", old_index}, {"old_row_begin", &o->row_begin}, {"old_row_gid", &o->row_gid}, {"old_incidence_begin", &o->incidence_begin},
+    } bind[] = {{"gid", &p->field[FIELD_GID].now}, {"pair_i", &l->pair_i}, {"pair_j", &l->pair_j}, {"old_index", old_index},
+        {"old_row_begin", &o->row_begin}, {"old_row_gid", &o->row_gid}, {"old_incidence_begin", &o->incidence_begin},
         {"old_incidence", &o->incidence}, {"arrival_begin", &pairs->arrivals.begin}, {"arrival_gid", &pairs->arrivals.key},
         {"arrival_state", &pairs->arrivals.state}, {"arrival_history", &pairs->arrivals.history}, {"old_state", &o->state},
         {"old_history", &o->history}, {"state", &l->state}, {"history", &l->history}};
     for (size_t i = 0; i < sizeof bind / sizeof *bind; i++) launch_bind_buffer(k, bind[i].name, bind[i].buffer);
-    launch_run(k, dev->compute, l->n_all, 0, NULL, NULL);
+    launch_run(k, dev->compute, l->first_boundary + l->n_boundary, 0, NULL, NULL);
 }

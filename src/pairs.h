@@ -10,11 +10,13 @@
 struct pair_list {
     int64_t n_owned, n_all;
     int64_t n_row, n_interior, first_boundary, n_boundary, n_incidence;
-    int64_t n_own;                                /* pairs whose lower element this rank owns: every pair counts on one rank */
-    int64_t capacity;                             /* pairs that the arrays hold */
-    struct buffer row_begin, row, row_gid;        /* [n_all + 1], [n_row], [n_row] */
-    struct buffer split, up_begin, up_count;      /* [n_all] */
-    struct buffer incidence_begin, incidence;     /* [n_owned + 1], [n_incidence], see kernels/incidence.h */
+    int64_t n_mine;                           /* boundary pairs that this rank computes, the first ones: all of them unless assigned.h says else */
+    int64_t n_lower;                          /* of the pairs that it computes, those count here whose lower element's number is below */
+    int64_t n_own;                            /* pairs whose lower element this rank owns: every pair counts on one rank */
+    int64_t capacity;                         /* pairs that the arrays hold */
+    struct buffer row_begin, row, row_gid;    /* [n_all + 1], [n_row], [n_row] */
+    struct buffer split, up_begin;            /* [n_all] */
+    struct buffer incidence_begin, incidence; /* [n_owned + 1], [n_incidence], see kernels/incidence.h */
     struct buffer pair_i, pair_j, state, history; /* [capacity], history [layout.history][capacity] */
 };
 

@@ -39,7 +39,7 @@ static struct list pairs_of(struct sim *s)
     buffer_read(s->dev, &s->particles->field[FIELD_GID].now, 0, all * sizeof *gid, gid);
     for (size_t k = 0; k < n; k++) {
         bool gap = k >= (size_t)p->n_interior && k < (size_t)p->first_boundary;
-        l.mine[k] = !gap && i[k] < p->n_owned;
+        l.mine[k] = !gap && k < (size_t)(p->first_boundary + p->n_mine) && i[k] < p->n_lower;
         l.id[k] = gap ? -1 : gid[i[k]];
         l.other[k] = gap ? -1 : gid[j[k]];
     }

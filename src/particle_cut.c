@@ -18,7 +18,7 @@
 enum { ROUNDS = 4, FINE = 16 };
 
 /* Owned elements, and positions and number of all. Work, in halves of an interaction: an element counts as one, so does each wall that it may touch;
- * a pair counts half at both ends, and a whole one on both ranks where they are two. */
+ * a pair counts half at both ends, and a whole one on both ranks where they are two and both compute it. */
 struct view {
     int64_t n, n_all;
     double (*x)[3];  /* [n_all] */
@@ -117,10 +117,11 @@ static struct points points_create(const struct sim *s, const struct view *v)
 static double add_up(const struct sim *s, const struct view *v, const struct rcb *tree, int64_t *work)
 {
     int *owner = owners(v, tree);
+    bool both = s->scene->partition.boundary == CUT_PAIRS_BOTH;
     memset(work, 0, (size_t)s->comm->n_rank * sizeof *work);
     for (int64_t i = 0; i < v->n; i++) {
         int64_t n_far = 0;
-        for (int k = v->begin[i]; k < v->begin[i + 1]; k++) n_far += owner[v->row[k]] != owner[i];
+        for (int k = v->begin[i]; k < v->begin[i + 1] && both; k++) n_far += owner[v->row[k]] != owner[i];
         work[owner[i]] += v->weight[i] + n_far;
     }
     comm_sum_i64(s->comm, work, s->comm->n_rank);
@@ -166,7 +167,7 @@ static struct rcb *cut_graph(struct sim *s, const struct view *v)
     int n_leaf = graph_leaves_wanted(s->comm, s->particles->n_global);
     struct rcb *tree = rcb_create(s->comm, n_leaf, NULL, (const double *)v->x, v->weight, v->n);
     int *leaf = owners(v, tree), *owner = fail_alloc((size_t)n_leaf * sizeof *owner);
-    struct graph_elements elements = {v->n, v->weight, v->begin, v->row, leaf, true};
+    struct graph_elements elements = {v->n, v->weight, v->begin, v->row, leaf, s->scene->partition.boundary == CUT_PAIRS_BOTH};
     graph_leaves(s->comm, n_leaf, &elements, s->balance->share, s->scene->partition.threshold, owner);
     rcb_assign(tree, owner);
     free(leaf);

@@ -114,13 +114,14 @@ void particle_lists(struct sim *s)
     struct cells_bounds all = p->n_ghost > 0 ? cells_bounds(dev, s->cells, p, p->n_owned + p->n_ghost) : s->bounds;
     cells_sort(dev, s->cells, s->scan, p, p->n_owned + p->n_ghost, &all);
     pairs_build(dev, s->pairs, s->cells, s->scan, p);
+    if (s->assigned) assigned_build(dev, s->assigned, s->scan, p, s->pairs, s->ghosts);
     if (s->wall_contacts) wall_contacts_build(dev, s->wall_contacts, s->scan, p, s->step, (int)ceil(s->horizon / s->dt), s->box, s->box + 3);
     watch_reset(dev, &s->watch, s->comm, &p->flags);
     s->built_at = s->step;
     const struct pair_list *l = &s->pairs->now;
-    int64_t n_pair = l->n_interior + l->n_boundary, n_wall = s->wall_contacts ? s->wall_contacts->now.n : 0;
+    int64_t n_pair = l->n_interior + l->n_mine, n_wall = s->wall_contacts ? s->wall_contacts->now.n : 0;
     const struct halo *halo = s->ghosts->exchange.halo;
-    balance_add(s->balance, (struct partition_part){p->n_owned + n_pair + n_wall, n_pair - l->n_own, halo ? halo->n_send : 0});
+    balance_add(s->balance, (struct partition_part){p->n_owned + n_pair + n_wall, l->n_interior + l->n_boundary - l->n_own, halo ? halo->n_send : 0});
 }
 
 void particle_regroup(struct sim *s)
@@ -132,6 +133,7 @@ void particle_regroup(struct sim *s)
     comm_or_i32(s->comm, &lost, 1);
     if (lost) output_stop_numerics(s, "positions or velocities are not numbers any more");
     check_inside(s, &now);
+    if (s->assigned) assigned_complete(s->dev, s->assigned, s->pairs);
     if (s->features.energy) energy_collect(s);
     adapt_skin(s, smallest_radius(s));
     if (s->wall_contacts) wall_contacts_set_step(s->dev, s->wall_contacts, s->step);

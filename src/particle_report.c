@@ -48,7 +48,10 @@ int64_t particle_owned(const struct sim *s)
 void particle_count(const struct sim *s, struct step_counts *counts)
 {
     const struct exchange *x = &s->ghosts->exchange;
-    *counts = (struct step_counts){s->pairs->now.n_own, exchange_sent(x), x->halo ? x->halo->n_send : 0, x->n_send};
+    struct halo_traffic sent = exchange_sent(x), back = s->assigned ? assigned_sent(s->assigned) : (struct halo_traffic){0};
+    sent.bytes += back.bytes;
+    sent.messages += back.messages;
+    *counts = (struct step_counts){s->pairs->now.n_own, sent, x->halo ? x->halo->n_send : 0, x->n_send};
 }
 
 void particle_report_features(const struct sim *s, struct report *r)

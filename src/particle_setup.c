@@ -19,6 +19,7 @@ static const char *const source_lists[] = {"scan.cl", "cells.cl", "rows.cl", "pa
 static const char *const source_pair[] = {"pair_force.cl", "layout.cl", NULL};
 static const char *const source_wall[] = {"wall_keep.cl", "wall_force.cl", "layout.cl", NULL};
 static const char *const source_body[] = {"gather.cl", NULL};
+static const char *const source_assign[] = {"assign.cl", NULL};
 
 static struct program *build(struct sim *s, const char *name, enum features_program kind, const char *const *sources)
 {
@@ -72,6 +73,8 @@ static void create_kernels(struct sim *s)
     s->program_pair = build(s, "pairs", FEATURES_PAIR, source_pair);
     s->program_body = build(s, "motion", FEATURES_BODY, source_body);
     s->program_wall = s->features.walls ? build(s, "walls", FEATURES_WALL, source_wall) : NULL;
+    if (s->scene->partition.boundary == CUT_PAIRS_ASSIGNED && s->comm->n_rank > 1)
+        s->program_assign = build(s, "assign", FEATURES_BODY, source_assign);
     s->select_room = launch_create(s->program_lists, "select_room");
     s->pair_force = launch_create(s->program_pair, "pair_force");
     s->wall_force = s->program_wall ? launch_create(s->program_wall, "wall_force") : NULL;
@@ -195,6 +198,7 @@ void particle_setup(struct sim *s)
     s->pairs = pairs_create(s->dev, &s->features, s->program_lists, s->program_pair);
     s->owners = owners_create(s->dev, s->comm, &s->features, s->program_lists, s->period, s->domain);
     s->ghosts = ghosts_create(s->dev, s->comm, &s->features, s->program_lists, s->period);
+    if (s->program_assign) s->assigned = assigned_create(s->dev, s->comm, s->program_assign, s->program_lists, particles_real(&s->features));
     if (s->features.walls)
         s->wall_contacts = wall_contacts_create(s->dev, s->comm, &s->features, s->scene, s->walls, s->dt, s->program_lists, s->program_wall);
     s->energy = energy_create(s);
@@ -206,10 +210,11 @@ void particle_setup(struct sim *s)
 void particle_free(struct sim *s)
 {
     struct launch *launch[] = {s->select_room, s->pair_force, s->wall_force, s->gather, s->kick_drift};
-    struct program *program[] = {s->program_lists, s->program_pair, s->program_wall, s->program_body};
+    struct program *program[] = {s->program_lists, s->program_pair, s->program_wall, s->program_body, s->program_assign};
     if (s->ghosts) exchange_settle(s->dev, &s->ghosts->exchange);
     limit_free(s->dev, s->limit);
     energy_free(s->dev, s->energy);
+    assigned_free(s->dev, s->assigned);
     ghosts_free(s->dev, s->ghosts);
     owners_free(s->dev, s->owners);
     wall_contacts_free(s->dev, s->wall_contacts);
@@ -224,5 +229,5 @@ void particle_free(struct sim *s)
     buffer_free(s->dev, &s->table_pair);
     buffer_free(s->dev, &s->table_wall);
     for (int i = 0; i < 5; i++) launch_free(launch[i]);
-    for (int i = 0; i < 4; i++) program_free(program[i]);
+    for (int i = 0; i < 5; i++) program_free(program[i]);
 }

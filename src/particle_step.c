@@ -2,7 +2,8 @@
  * where
  * it waits for a flag of the step before.
  *
- *   forces at t^n    interior pairs and walls beside the exchange, then pairs with ghosts
+ *   forces at t^n    interior pairs and walls beside the exchange, then pairs with ghosts; where those are assigned to one side (assigned.h) some
+ *                    interior pairs are left for the time in which their results travel
  *   gather           sum in fixed order, kick; unless the step is observed also the next kick and drift, to t^{n+1} */
 #include "particle.h"
 
@@ -20,15 +21,25 @@ static void launch_pairs(struct sim *s, int64_t first, int64_t n, const cl_event
     if (n > 0 || done) launch_run(s->pair_force, s->dev->compute, n, wait ? 1 : 0, wait, done);
 }
 
-/* Interior pairs. With ghosts to come, `most` is the event of their larger part: when it is over the host has time to pass the ghosts on, while the
- * device does the rest. */
-static void launch_interior(struct sim *s, cl_event *most)
+/* Interior pairs first <= p < end. With messages to come, `most` is the event of their larger part: when it is over the host has time to pass on what
+ * came, while the device does the rest. */
+static void launch_interior(struct sim *s, int64_t first, int64_t end, cl_event *most)
 {
-    int64_t n = s->pairs->now.n_interior, n_first = s->comm->n_rank > 1 ? n * 3 / 4 / BATCH * BATCH : n;
+    int64_t middle = s->comm->n_rank > 1 ? first + (end - first) * 3 / 4 / BATCH * BATCH : end;
     trace_part(s->dev->trace, "interior");
-    launch_pairs(s, 0, n_first, NULL, s->comm->n_rank > 1 ? most : NULL);
-    launch_pairs(s, n_first, n - n_first, NULL, NULL);
+    launch_pairs(s, first, middle - first, NULL, s->comm->n_rank > 1 ? most : NULL);
+    launch_pairs(s, middle, end - middle, NULL, NULL);
     trace_part(s->dev->trace, NULL);
+}
+
+/* Results of boundary pairs to and from the ranks that do not compute them, under the interior pairs from `first` on. */
+static void send_back(struct sim *s, int64_t first)
+{
+    cl_event most = NULL;
+    assigned_begin(s->dev, s->assigned, &s->timers);
+    launch_interior(s, first, s->pairs->now.n_interior, &most);
+    device_flush(s->dev);
+    assigned_swap(s->dev, s->assigned, &most, &s->timers);
 }
 
 static void launch_walls(struct sim *s)
@@ -43,16 +54,18 @@ static void launch_walls(struct sim *s)
 void particle_forces(struct sim *s)
 {
     const struct pair_list *l = &s->pairs->now;
+    int64_t n_first = s->assigned ? l->n_interior / 2 / BATCH * BATCH : l->n_interior;
     cl_event most = NULL;
     if (s->wall_contacts) wall_contacts_set_step(s->dev, s->wall_contacts, s->step);
     ghosts_begin(s->dev, s->ghosts, &s->timers);
-    launch_interior(s, &most);
+    launch_interior(s, 0, n_first, &most);
     launch_walls(s);
     device_flush(s->dev);
     const cl_event *arrived = ghosts_swap(s->dev, s->ghosts, s->particles, &most, &s->timers);
     trace_part(s->dev->trace, "boundary");
-    launch_pairs(s, l->first_boundary, l->n_boundary, arrived, NULL);
+    launch_pairs(s, l->first_boundary, l->n_mine, arrived, NULL);
     trace_part(s->dev->trace, NULL);
+    if (s->assigned) send_back(s, n_first);
 }
 
 /* After the drift to the next step. */

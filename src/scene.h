@@ -171,12 +171,14 @@ struct domain {
 
 enum partition_method { PARTITION_GEOMETRIC, PARTITION_INTERACTIONS, PARTITION_GRAPH };
 enum partition_weights { WEIGHTS_INTERACTIONS, WEIGHTS_MEASURED };
+enum partition_boundary { CUT_PAIRS_BOTH, CUT_PAIRS_ASSIGNED }; /* pairs of two ranks: computed on both, or on one (kernels/assign.cl) */
 #define PARTITION_AUTO (-1)
 struct scene_partition {
     enum partition_method method;
     long every;       /* steps between re-cuts; 0: never; PARTITION_AUTO: when it pays */
     double threshold; /* imbalance U above which a due re-cut is made, and below which weights are not raised any more */
     enum partition_weights weights;
+    enum partition_boundary boundary;
 };
 
 enum measure_kind { MEASURE_COUNT, MEASURE_ENERGY, MEASURE_MOMENTUM, MEASURE_WALL_FORCE, MEASURE_PROBE, MEASURE_STRESS_MAX, MEASURE_BROKEN };

@@ -91,6 +91,8 @@ void scene_check_lattice(struct scene_reader *reader)
     for (int k = 0; k < reader->scene->n_boundary; k++) check_boundary(reader, k);
     if (reader->scene->lattice.relax && !scene_issue_is_below(reader, "time.scheme") && reader->scene->time.scheme != SCHEME_LEAPFROG)
         scene_issue_on(reader, "time.scheme", "lattice.relax takes leapfrog alone");
+    if (!scene_issue_is_below(reader, "partition.boundary") && reader->scene->partition.boundary == CUT_PAIRS_ASSIGNED)
+        scene_issue_on(reader, "partition.boundary", "assigned is for particles: links of a lattice are computed by both their cells");
 }
 
 void scene_check_derive_damping(struct scene *scene)

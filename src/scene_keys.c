@@ -284,6 +284,8 @@ SPHERE_KEYS("boundaries[].where", boundary, where., AT_MOST_ONE),
     .text = "imbalance (largest over mean, minus 1) above which a due re-cut is made, and that a cut shall stay below"},
 {"partition.weights", KEY_CHOICE, .fallback = "interactions", .words = "interactions|measured", .at = AT(scene, partition.weights),
     .text = "each rank's share: equal interactions, or as many as its measured speed says"},
+{"partition.boundary", KEY_CHOICE, .fallback = "both", .words = "both|assigned", .at = AT(scene, partition.boundary),
+    .text = "a pair of elements of two ranks: computed on both, or assigned to one that sends the force back (particles only)"},
 
 {"output", KEY_MAP, .fallback = "{}", .text = "frames"},
 {"output.every", KEY_NUMBER, OPTIONAL, UNIT_TIME, "0", FROM_ZERO, .at = AT(scene, output.every),

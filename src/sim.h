@@ -4,6 +4,7 @@
 #ifndef DEMOCLES_SIM_H
 #define DEMOCLES_SIM_H
 
+#include "assigned.h"
 #include "balance.h"
 #include "energy.h"
 #include "ghosts.h"
@@ -46,7 +47,7 @@ struct sim {
     /* particle method */
     struct elements_host *first; /* as generated, all elements on every rank */
     int64_t *left;               /* [n_measure] elements that left the run where a count holds, on this rank */
-    struct program *program_lists, *program_pair, *program_wall, *program_body;
+    struct program *program_lists, *program_pair, *program_wall, *program_body, *program_assign;
     struct particles *particles;
     struct cells *cells;
     struct scan *scan;
@@ -54,6 +55,7 @@ struct sim {
     struct wall_contacts *wall_contacts; /* NULL without walls */
     struct owners *owners;
     struct ghosts *ghosts;
+    struct assigned *assigned; /* NULL: cut pairs are computed on both ranks, or there is one rank */
     struct rcb *rcb;
     struct launch *select_room, *pair_force, *wall_force, *gather, *kick_drift;
     struct buffer table_pair, table_wall;

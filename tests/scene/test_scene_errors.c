@@ -59,6 +59,8 @@ static void what_is_not_here_yet(void **state)
     struct fixture *f = *state;
     fixture_expect_one(
         f, SCENE(ONE "partition: {method: grpah}\n"), "scene.yaml:5:21: partition.method: unknown word 'grpah'; did you mean 'graph'?");
+    fixture_expect_one(
+        f, SCENE(ONE "partition: {boundary: one}\n"), "scene.yaml:5:23: partition.boundary: unknown word 'one'; there is: both, assigned");
 }
 
 /* shape goes with fill, not with file; and one of the two is needed. */

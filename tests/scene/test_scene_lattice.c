@@ -117,6 +117,8 @@ static void materials(void **state)
     fixture_expect_one(f, SCENE("density: 1, poisson: 0", ""), "scene.yaml:3:16: materials.m: missing key 'young'");
     fixture_expect_one(f, SCENE(GOOD, "lattice: {law: seed}\n"),
         "scene.yaml:3:48: materials.m.poisson: poisson must be 0: pair springs without volumetric term have no other");
+    fixture_expect_one(f, SCENE(GOOD, "partition: {boundary: assigned}\n"),
+        "scene.yaml:5:23: partition.boundary: assigned is for particles: links of a lattice are computed by both their cells");
     fixture_expect_one(f, SCENE(GOOD ", damping: {ratio: 0.1}", ""), "scene.yaml:3:62: materials.m.damping: missing key 'at' (ratio)");
     fixture_expect_one(f, SCENE(GOOD ", damping: {at: 1}", ""), "scene.yaml:3:63: materials.m.damping.at: only beside 'ratio'");
     fixture_expect_one(f, SCENE(GOOD ", damping: {ratio: 0.1, at: 1, mass: 1}", ""),

@@ -38,7 +38,7 @@ static void v_funnel(void **state)
     assert_true(s->wall[0].kind == SURFACE_STL && s->wall[0].remove_at == HUGE_VAL && s->wall[0].appear_at == 0);
     assert_true(s->wall[1].kind == SURFACE_RECTANGLE && s->wall[1].size[1] == 0.032 && s->wall[1].remove_at == 0.3);
     assert_true(s->domain.remove_outside && !s->domain.has_box && !s->domain.periodic[2]);
-    assert_true(s->partition.every == 1000 && s->partition.threshold == 0.1);
+    assert_true(s->partition.every == 1000 && s->partition.threshold == 0.1 && s->partition.boundary == CUT_PAIRS_BOTH);
     assert_true(s->output.every == 0.02 && s->output.n_field == 4 && s->output.checkpoint_every == 0);
     assert_string_equal(s->output.field[3], "coordination");
     assert_int_equal(s->n_measure, 2);
@@ -98,6 +98,7 @@ static void everything(void **state)
     assert_true(g[2].diameter[0] == 2e-3 && g[2].diameter[1] == 6e-3 && g[2].region.scale == 0.01);
     assert_true(g[3].from_file && g[3].file && g[3].material == 0);
     assert_true(s->domain.periodic[0] && !s->domain.periodic[1] && s->domain.periodic[2] && s->domain.has_box && s->domain.max[0] == 2);
+    assert_true(s->partition.boundary == CUT_PAIRS_ASSIGNED);
     assert_true(s->partition.every == 500 && s->partition.threshold == 0.2 && s->output.checkpoint_every == 1 && s->output.n_field == 3);
     const struct measure *m = s->measure;
     assert_true(m[0].below[2] == 0 && m[0].above[0] == -0.01 && m[2].kind == MEASURE_MOMENTUM && m[2].every == 2e-3);

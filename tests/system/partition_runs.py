@@ -24,6 +24,9 @@ class Partition(parallel_runs.Case):
         record = run.record()
         return [record[key] for key in ("digest", "steps", "elements_left", "rebuilds", "energy", "momentum")], run.series(), run.contacts()
 
+    def work(self, record):
+        return sum(rank["work"] for rank in record["partition"]["ranks"])
+
     def check_same(self, scene, alone, ranks, **partition):
         """Runs, compares with one rank, returns the record."""
         with self.subTest(scene=scene, ranks=ranks, **partition):
@@ -57,6 +60,20 @@ class Partition(parallel_runs.Case):
             scene = self.scene(name)
             alone = self.found(self.good_run(scene, 1))
             self.check_same(scene, alone, ranks, method="graph", every=10)
+
+    def test_assigned(self):
+        """Pairs of two ranks computed on one of them: friction, bonds, rolling, sizes, periodic faces, elements that leave. All ranks together
+        compute what one does alone."""
+        for name, runs in (("column", (("geometric", 2, 0), ("graph", 3, 37), ("interactions", 8, "auto"))), ("hertz", (("graph", 4, 37),)),
+                           ("leaving", (("geometric", 3, 37),)), ("gas_xy", (("graph", 3, 37),))):
+            scene = self.scene(name)
+            run = self.good_run(scene, 1)
+            alone, work = self.found(run), self.work(run.record())
+            for method, ranks, every in runs:
+                record = self.check_same(scene, alone, ranks, method=method, every=every, boundary="assigned")
+                self.assertEqual(record["partition"]["boundary"], "assigned")
+                self.assertEqual(self.work(record), work)
+                self.assertGreater(record["partition"]["cut"], 0)
 
     def test_record(self):
         """The balance over time, with --profile: a line for each build of lists after the first."""

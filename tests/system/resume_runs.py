@@ -83,9 +83,9 @@ class Case(robust_jobs.Case):
 class Particles(Case):
     """Stops somewhere; and right before a build of the lists, when ranks have begun to agree on it but do not know yet."""
 
-    def check(self, name, precision, stop, ranks, columns):
+    def check(self, name, precision, stop, ranks, columns, boundary="both"):
         with self.subTest(scene=name, precision=precision):
-            scene, args = self.scene(name), ("--precision", precision)
+            scene, args = self.scene(name), ("--precision", precision, "--set", f"partition.boundary={boundary}")
             whole = self.good_run(scene, ranks[0], *args, name="whole")
             record, built_at = whole.record(), number(whole.frames()[-1], "built_at")
             self.assertGreater(built_at - 1, stop)
@@ -96,7 +96,7 @@ class Particles(Case):
 
     def test_laws(self):
         self.check("column", "double", 150, (1, 1, 3, 2), ("pairs/history", "wall_contacts/ledger"))
-        self.check("hertz", "double", 133, (2, 3, 2, 1), ("pairs/history", "wall_contacts/history"))
+        self.check("hertz", "double", 133, (2, 3, 2, 1), ("pairs/history", "wall_contacts/history"), "assigned")
         self.check("shear", "mixed", 255, (1, 1, 3, 2), ("pairs/history",))
 
     def test_places(self):
