@@ -1,4 +1,4 @@
-/* Pairs that a border cuts, each computed on one of its two ranks: on which, where they are then in the list, and in what order results travel.
+/* Pairs that a border cuts, each computed on one of its two ranks: on which, where they are then in the list, and what travels in what order.
  *
  * With B(i) the rank of element i and L(i, P) the number of its neighbours on rank P, a pair (i, j), i the lower id, is computed on B(i) if
  * L(i, B(j)) <= L(j, B(i)), else on B(j): the end with more neighbours on the other side is the one whose state travels. (Rule of the parallel solver
@@ -86,6 +86,22 @@ void assign_list(int n_element, int fill, int n_owned, int first_theirs, int is_
         at++;
     }
     if (!fill) begin[k] = at;
+}
+
+/* begin [n + 1] scanned; used [n + 1]: whether element k has a pair in the list. */
+__kernel __attribute__((reqd_work_group_size(64, 1, 1)))
+void assign_use(int n, __global const int *begin, __global int *used)
+{
+    int k = get_global_id(0);
+    if (k < n) used[k] = begin[k + 1] > begin[k];
+}
+
+/* used: scanned. list: the elements that are used. */
+__kernel __attribute__((reqd_work_group_size(64, 1, 1)))
+void assign_pick(int n, __global const int *used, __global const int *element, __global int *list)
+{
+    int k = get_global_id(0);
+    if (k < n && used[k + 1] > used[k]) list[used[k]] = element[k];
 }
 
 /* Between planes [width][capacity] of numbers of `words` 4-byte words and records [n][width] of them: record i is that of place index[i]. (Records

@@ -131,6 +131,11 @@ static void choose(struct device *dev, struct ghosts *g, struct scan *scan, cons
     free(index);
 }
 
+void ghosts_refresh(struct device *dev, struct ghosts *g, struct particles *p)
+{
+    exchange_rows(dev, g, p, &p->field[FIELD_STATE].now, p->field[FIELD_STATE].bytes);
+}
+
 void ghosts_plan(
     struct device *dev, struct ghosts *g, const struct owners *owners, struct scan *scan, struct particles *p, const struct cells_bounds *own)
 {
@@ -152,7 +157,7 @@ void ghosts_plan(
     particles_reserve(dev, p, g->features, p->n_owned + p->n_ghost, p->n_owned);
     exchange_rows(dev, g, p, &p->field[FIELD_GID].now, p->field[FIELD_GID].bytes);
     exchange_rows(dev, g, p, &p->reach, particles_preal(g->features));
-    exchange_rows(dev, g, p, &p->field[FIELD_STATE].now, p->field[FIELD_STATE].bytes); /* g->gather goes on with these */
+    ghosts_refresh(dev, g, p); /* g->gather goes on with these */
     exchange_bind(dev, &g->exchange, p->field[FIELD_STATE].bytes, false);
     free(count_to);
     free(all);

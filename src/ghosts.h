@@ -27,6 +27,9 @@ void ghosts_free(struct device *dev, struct ghosts *g);
 void ghosts_plan(
     struct device *dev, struct ghosts *g, const struct owners *owners, struct scan *scan, struct particles *p, const struct cells_bounds *own);
 
+/* All states anew, outside of a step: blocking, collective. */
+void ghosts_refresh(struct device *dev, struct ghosts *g, struct particles *p);
+
 /* Enqueues packing of what others need and its read-back, posts receives. */
 void ghosts_begin(struct device *dev, struct ghosts *g, struct timers *timers);
 /* Sends, waits for arrivals, enqueues their copy to the device. `most`: see exchange_swap. Returns the event that kernels on ghosts have to wait

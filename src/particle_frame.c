@@ -17,7 +17,7 @@ static double *read_vectors(struct sim *s, const struct buffer *buffer, size_t n
     return three;
 }
 
-/* Contacts per element: overlapping neighbours, and walls that the element touches. */
+/* Contacts per element: overlapping neighbours, and walls that the element touches. Collective. */
 static int32_t *coordination(struct sim *s)
 {
     const struct pair_list *l = &s->pairs->now;
@@ -26,6 +26,7 @@ static int32_t *coordination(struct sim *s)
     cl_int *begin = fail_alloc((all + 1) * sizeof *begin), *row = fail_alloc((size_t)l->n_row * sizeof *row);
     char *state = fail_alloc(all * stride);
     double *x = fail_alloc(4 * all * sizeof *x);
+    if (s->assigned) ghosts_refresh(s->dev, s->ghosts, s->particles);
     buffer_read(s->dev, &l->row_begin, 0, (all + 1) * sizeof *begin, begin);
     buffer_read(s->dev, &l->row, 0, (size_t)l->n_row * sizeof *row, row);
     buffer_read(s->dev, &s->particles->field[FIELD_STATE].now, 0, all * stride, state);

@@ -21,6 +21,7 @@ static struct limit_result from_below(struct sim *s, double share)
 struct limit_result particle_limit(struct sim *s)
 {
     double share = limit_best_share(s->scene);
+    if (s->assigned) ghosts_refresh(s->dev, s->ghosts, s->particles);
     struct limit_result r = limit_run(s, s->dt, share);
     if (r.dt >= s->dt) return r; /* as a rule: one run of the kernel */
     r = from_below(s, share);

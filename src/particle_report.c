@@ -47,11 +47,12 @@ int64_t particle_owned(const struct sim *s)
 
 void particle_count(const struct sim *s, struct step_counts *counts)
 {
-    const struct exchange *x = &s->ghosts->exchange;
-    struct halo_traffic sent = exchange_sent(x), back = s->assigned ? assigned_sent(s->assigned) : (struct halo_traffic){0};
+    const struct exchange *ghosts = &s->ghosts->exchange, *x = s->assigned ? assigned_exchange(s->assigned, ASSIGNED_STATES) : ghosts;
+    struct halo_traffic sent = exchange_sent(x), back = {0};
+    if (s->assigned) back = exchange_sent(assigned_exchange(s->assigned, ASSIGNED_RESULTS));
     sent.bytes += back.bytes;
     sent.messages += back.messages;
-    *counts = (struct step_counts){s->pairs->now.n_own, sent, x->halo ? x->halo->n_send : 0, x->n_send};
+    *counts = (struct step_counts){s->pairs->now.n_own, sent, ghosts->halo ? ghosts->halo->n_send : 0, x->n_send};
 }
 
 void particle_report_features(const struct sim *s, struct report *r)

@@ -36,10 +36,10 @@ static void launch_interior(struct sim *s, int64_t first, int64_t end, cl_event 
 static void send_back(struct sim *s, int64_t first)
 {
     cl_event most = NULL;
-    assigned_begin(s->dev, s->assigned, &s->timers);
+    assigned_begin(s->dev, s->assigned, ASSIGNED_RESULTS, &s->timers);
     launch_interior(s, first, s->pairs->now.n_interior, &most);
     device_flush(s->dev);
-    assigned_swap(s->dev, s->assigned, &most, &s->timers);
+    assigned_swap(s->dev, s->assigned, ASSIGNED_RESULTS, &most, &s->timers);
 }
 
 static void launch_walls(struct sim *s)
@@ -57,11 +57,14 @@ void particle_forces(struct sim *s)
     int64_t n_first = s->assigned ? l->n_interior / 2 / BATCH * BATCH : l->n_interior;
     cl_event most = NULL;
     if (s->wall_contacts) wall_contacts_set_step(s->dev, s->wall_contacts, s->step);
-    ghosts_begin(s->dev, s->ghosts, &s->timers);
+    if (s->assigned) assigned_begin(s->dev, s->assigned, ASSIGNED_STATES, &s->timers);
+    else ghosts_begin(s->dev, s->ghosts, &s->timers);
     launch_interior(s, 0, n_first, &most);
     launch_walls(s);
     device_flush(s->dev);
-    const cl_event *arrived = ghosts_swap(s->dev, s->ghosts, s->particles, &most, &s->timers);
+    const cl_event *arrived = NULL;
+    if (s->assigned) assigned_swap(s->dev, s->assigned, ASSIGNED_STATES, &most, &s->timers);
+    else arrived = ghosts_swap(s->dev, s->ghosts, s->particles, &most, &s->timers);
     trace_part(s->dev->trace, "boundary");
     launch_pairs(s, l->first_boundary, l->n_mine, arrived, NULL);
     trace_part(s->dev->trace, NULL);

@@ -22,15 +22,18 @@ def keys(**partition):
 class Partition(parallel_runs.Case):
     def found(self, run):
         record = run.record()
-        return [record[key] for key in ("digest", "steps", "elements_left", "rebuilds", "energy", "momentum")], run.series(), run.contacts()
+        frame = parallel_runs.frames.Frame(run.frames()[-1])
+        touching = sorted(zip(frame.field("id"), frame.field("coordination"))) if "coordination" in frame.names else None
+        same = [record[key] for key in ("digest", "steps", "dt_limit", "elements_left", "rebuilds", "energy", "momentum")]
+        return same, run.series(), run.contacts(), touching
 
     def work(self, record):
         return sum(rank["work"] for rank in record["partition"]["ranks"])
 
-    def check_same(self, scene, alone, ranks, **partition):
+    def check_same(self, scene, alone, ranks, *args, **partition):
         """Runs, compares with one rank, returns the record."""
         with self.subTest(scene=scene, ranks=ranks, **partition):
-            run = self.good_run(scene, ranks, *keys(threshold=0, **partition))
+            run = self.good_run(scene, ranks, *args, *keys(threshold=0, **partition))
             self.assertEqual(self.found(run), alone)
             record = run.record()
             self.assertEqual(record["partition"]["method"], partition["method"])
@@ -64,13 +67,14 @@ class Partition(parallel_runs.Case):
     def test_assigned(self):
         """Pairs of two ranks computed on one of them: friction, bonds, rolling, sizes, periodic faces, elements that leave. All ranks together
         compute what one does alone."""
+        fields = ("--set", "output.fields=[coordination]")
         for name, runs in (("column", (("geometric", 2, 0), ("graph", 3, 37), ("interactions", 8, "auto"))), ("hertz", (("graph", 4, 37),)),
                            ("leaving", (("geometric", 3, 37),)), ("gas_xy", (("graph", 3, 37),))):
             scene = self.scene(name)
-            run = self.good_run(scene, 1)
+            run = self.good_run(scene, 1, *fields)
             alone, work = self.found(run), self.work(run.record())
             for method, ranks, every in runs:
-                record = self.check_same(scene, alone, ranks, method=method, every=every, boundary="assigned")
+                record = self.check_same(scene, alone, ranks, *fields, method=method, every=every, boundary="assigned")
                 self.assertEqual(record["partition"]["boundary"], "assigned")
                 self.assertEqual(self.work(record), work)
                 self.assertGreater(record["partition"]["cut"], 0)
