@@ -72,8 +72,8 @@ static bool is_result(const char *name)
 /* Names of files that every run makes, whatever its scene. */
 static bool is_ours(const char *name)
 {
-    const char *const fixed[] = {
-        "log.txt", "scene.yaml", "resolved.yaml", "trace.json", "stop", "run.json.tmp", "scene.yaml.tmp", "resolved.yaml.tmp", "trace.json.tmp"};
+    const char *const fixed[] = {"log.txt", "scene.yaml", "resolved.yaml", "run.balance.csv", "trace.json", "stop", "run.json.tmp", "scene.yaml.tmp",
+        "resolved.yaml.tmp", "trace.json.tmp"};
     if (is_result(name) || !fnmatch("frame_[0-9]*.hdf.tmp", name, 0)) return true;
     for (size_t k = 0; k < sizeof fixed / sizeof *fixed; k++) {
         if (!strcmp(name, fixed[k])) return true;

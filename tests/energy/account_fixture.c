@@ -101,7 +101,7 @@ static void write_pairs(struct sim *s, const struct account_state *a, int rank, 
     int n_owned, *local = local_numbers(a, rank, n_rank, &n_owned), n = 0;
     int *i = fail_alloc((N_PAIR + PAIR_GAP) * sizeof *i), *j = fail_alloc((N_PAIR + PAIR_GAP) * sizeof *j);
     double *ledger = fail_alloc((N_PAIR + PAIR_GAP) * LEDGER_WIDTH * sizeof *ledger);
-    l->n_owned = n_owned;
+    l->n_owned = l->n_lower = n_owned;
     l->capacity = N_PAIR + PAIR_GAP;
     for (int k = 0; k < (N_PAIR + PAIR_GAP) * LEDGER_WIDTH; k++) ledger[k] = NAN; /* between and behind the pairs */
     for (int boundary = 0; boundary < 2; boundary++) {
@@ -118,7 +118,7 @@ static void write_pairs(struct sim *s, const struct account_state *a, int rank, 
         l->n_interior = n;
         for (int k = 0; k < PAIR_GAP; k++) i[n++] = 0;
     }
-    l->n_boundary = n - l->first_boundary;
+    l->n_boundary = l->n_mine = n - l->first_boundary;
     buffer_reserve(s->dev, &l->pair_i, (size_t)l->capacity * sizeof *i);
     buffer_reserve(s->dev, &l->pair_j, (size_t)l->capacity * sizeof *j);
     buffer_reserve(s->dev, &s->pairs->ledger, (size_t)l->capacity * LEDGER_WIDTH * sizeof *ledger);
