@@ -29,7 +29,9 @@ def numbers(text):
 
 def run(program, scene, folder, ranks, *args):
     """Runs, replacing what is in the folder; returns exit code and stderr."""
-    env = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_btl_vader_single_copy_mechanism": "none"}
+    # a core for each rank: else one rank alone would have them all, and two could not be faster
+    env = {"POCL_MAX_PTHREAD_COUNT": "1", "POCL_MAX_COMPUTE_UNITS": "1", **os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1",
+           "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_btl_vader_single_copy_mechanism": "none"}
     command = [str(program), "run", str(scene), "-o", str(folder), "--force", "--quiet", *args]
     if ranks > 1:
         command = ["mpirun", "-n", str(ranks), "--oversubscribe", "--bind-to", "none", "--mca", "mpi_yield_when_idle", "1", *command]
