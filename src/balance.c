@@ -143,6 +143,7 @@ void balance_write(struct balance *b, double time)
     if (!b->record) return;
     for (int r = 0; r < b->comm->n_rank; r++) work += (double)b->work[r];
     series_add(b->record, time, (double[]){b->quality.imbalance, work, b->quality.cut, (double)b->n_deal, (double)b->n_moved});
+    series_flush(b->record); /* lists are built rarely */
 }
 
 void balance_go_on(struct balance *b, const struct timers *timers, int64_t step)

@@ -36,7 +36,7 @@ struct device {
     cl_device_type type;
     char name[DEVICE_TEXT], vendor[DEVICE_TEXT], driver[DEVICE_TEXT], version[DEVICE_TEXT], opencl_c[DEVICE_TEXT];
     char platform_name[DEVICE_TEXT], platform_version[DEVICE_TEXT];
-    bool fp64;                /* double precision */
+    bool fp64;                /* double precision; of a device that is open: of those of all ranks */
     bool fp32_correct_divide; /* float / and sqrt can be correctly rounded (program.c then asks for it) */
     bool unified;             /* host and device share memory */
     bool one_lane;            /* pocl on a CPU: one work-item goes over a batch of contacts, see kernels/batch.h */

@@ -28,9 +28,9 @@ void energy_require_double(struct sim *s)
 {
     if (s->dev->fp64) return;
     fail_stop_together(EXIT_DEVICE,
-        "%s: a measure of energy needs double precision, which the device %s does not have; take another device, or "
-        "leave the measure out",
-        s->scene->path, s->dev->name);
+        "%s: a measure of energy needs double precision on every rank, and a device here does not have it (`democles devices` shows which); take "
+        "another device, or leave the measure out",
+        s->scene->path);
 }
 
 struct energy *energy_create(struct sim *s)
@@ -41,7 +41,6 @@ struct energy *energy_create(struct sim *s)
     buffer_init(&e->gone_id, "gone elements");
     buffer_init(&e->gone_wall, "gone walls");
     for (int a = 0; a < 3; a++) e->wraps |= s->features.periodic[a] && fabs(s->scene->gravity[a]) > 0;
-    if (s->features.energy) energy_require_double(s);
     if (!s->dev->fp64) return e;
     char *body = features_options(&s->features, FEATURES_BODY), *options = fail_format("%s -DWITH_SUMS=1", body);
     e->program = program_build(s->dev, s->comm, "sums", options, source);

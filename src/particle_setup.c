@@ -191,6 +191,7 @@ void particle_setup(struct sim *s)
     s->left = fail_alloc((size_t)s->scene->n_measure * sizeof *s->left);
     log_print(
         s->log, "%lld element%s, %d wall%s", (long long)s->n_first, s->n_first == 1 ? "" : "s", s->scene->n_wall, s->scene->n_wall == 1 ? "" : "s");
+    if (s->features.energy) energy_require_double(s);
     create_kernels(s);
     s->particles = particles_create(s->dev, &s->features, s->program_lists);
     s->scan = scan_create(s->dev, s->program_lists);
@@ -205,6 +206,7 @@ void particle_setup(struct sim *s)
     s->horizon = HORIZON_STEPS * s->dt;
     if (s->from) particle_resume(s);
     else start(s);
+    if (s->options->profile) balance_record(s->balance, s->options->dir, s->from ? (double)s->step * s->dt : -1);
 }
 
 void particle_free(struct sim *s)

@@ -92,7 +92,6 @@ struct sim *sim_create(struct scene *scene, struct comm *comm, struct log *log, 
         (long long)s->n_step);
     s->ops->warn(s);
     print_memory(s);
-    if (options->profile && s->ops == &particle_ops) balance_record(s->balance, options->dir, s->from ? (double)s->step * s->dt : -1);
     if (options->trace) s->trace = trace_create(comm, s->dev, options->dir, options->trace_from, options->trace_steps, s->n_step);
     timer_end(&s->timers, TIMER_SETUP);
     return s;

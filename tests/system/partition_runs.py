@@ -136,7 +136,11 @@ class Partition(parallel_runs.Case):
         if not all(index):
             self.skipTest("there are no two implementations of OpenCL, pocl and rusticl")
         device = [["--device", found[1]] for found in index]
-        with open(self.scene("column")) as file:
+        column = self.scene("column")
+        refused = self.run_scene(column, 1, "--precision", "single", *device[1])
+        self.assertEqual(refused.code, 4)
+        self.assertIn("a measure of energy needs double precision", refused.err)
+        with open(column) as file:
             content = yaml.safe_load(file)
         content.pop("measure", None)  # energies are summed in double precision
         scene = os.path.join(self.dir, "bare.yaml")
