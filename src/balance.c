@@ -39,6 +39,7 @@ void balance_free(struct balance *b)
 void balance_add(struct balance *b, struct partition_part part)
 {
     b->part = part;
+    b->before = b->quality;
     partition_quality_add(&b->quality, b->comm, &part, b->share);
     comm_gather(b->comm, &part.work, b->work, sizeof part.work);
     if (b->is_fresh) b->after = b->quality.imbalance;
@@ -102,6 +103,15 @@ bool balance_is_due(const struct balance *b)
      * What was lost since the last deal is also the forecast for as long a time to come (Nicol and Saltz, IEEE Trans. Comput. 37 (1988) 1073). */
     if (b->scene->every == PARTITION_AUTO) return b->saving > b->cost;
     return b->step - b->dealt_at >= b->scene->every && b->imbalance > b->scene->threshold;
+}
+
+bool balance_is_uneven(struct balance *b)
+{
+    bool is_time = b->dealt_at == b->step || b->step - b->dealt_at >= b->scene->every;
+    if (b->comm->n_rank == 1 || b->scene->every == 0 || b->scene->every == PARTITION_AUTO) return false;
+    if (!is_time || b->quality.imbalance <= b->scene->threshold) return false;
+    b->quality = b->before;
+    return true;
 }
 
 void balance_begin(struct balance *b)

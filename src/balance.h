@@ -15,7 +15,8 @@ struct series;
 struct balance {
     const struct comm *comm;
     const struct scene_partition *scene;
-    struct partition_quality quality; /* of all list builds */
+    struct partition_quality quality; /* of all list builds that steps went on with */
+    struct partition_quality before;  /* without the last one */
     int64_t *share;                   /* [n_rank] of the work that each rank is to have */
     int64_t *work;                    /* [n_rank] at the last look: per step */
     double *speed;                    /* [n_rank] work per second, smoothed; 0: not known */
@@ -44,6 +45,9 @@ void balance_add(struct balance *b, struct partition_part part);
 void balance_look(struct balance *b, const struct timers *timers, int64_t step);
 /* After a look: whether elements shall be dealt out anew. The same on all ranks. */
 bool balance_is_due(const struct balance *b);
+/* After balance_add: whether they shall be, once more perhaps, before any step, since the new lists share the work out too unevenly. Those lists do
+ * not count then. The same on all ranks. */
+bool balance_is_uneven(struct balance *b);
 /* Around the deal, if there is one, and the moves of elements. n_moved: those that have changed hands, of all ranks. Collective. */
 void balance_begin(struct balance *b);
 void balance_end(struct balance *b, bool is_deal, int64_t n_moved);

@@ -31,16 +31,15 @@ static double smallest_radius(const struct sim *s)
     return r;
 }
 
-/* Returns how many have changed hands. */
-static int64_t count_removed(struct sim *s)
+/* What the move of elements out of the domain and around periodic directions changes. */
+static void account(struct sim *s)
 {
-    int64_t n[2] = {s->owners->n_removed, s->owners->n_moved};
-    for (int64_t i = 0; i < s->owners->n_removed; i++) particle_left(s, s->owners->removed[i].x);
-    comm_sum_i64(s->comm, n, 2);
-    s->n_removed += n[0];
-    s->particles->n_global -= n[0];
-    if (s->features.energy) energy_moved(s, n[0]);
-    return n[1];
+    int64_t n = s->owners->n_removed;
+    for (int64_t i = 0; i < n; i++) particle_left(s, s->owners->removed[i].x);
+    comm_sum_i64(s->comm, &n, 1);
+    s->n_removed += n;
+    s->particles->n_global -= n;
+    if (s->features.energy) energy_moved(s, n);
 }
 
 /* Where the scene has given the domain's extent and does not say that elements may leave it, one that does ends the run. */
@@ -124,6 +123,40 @@ void particle_lists(struct sim *s)
     balance_add(s->balance, (struct partition_part){p->n_owned + n_pair + n_wall, l->n_interior + l->n_boundary - l->n_own, halo ? halo->n_send : 0});
 }
 
+/* To owners, new ones if they are dealt out. Returns how many have changed hands. */
+static int64_t move(struct sim *s, struct cells_bounds bounds, bool is_deal)
+{
+    if (is_deal) particle_cut(s);
+    owners_move(s->dev, s->owners, s->cells, s->scan, s->particles, s->pairs, s->wall_contacts, &bounds);
+    int64_t n = s->owners->n_moved;
+    comm_sum_i64(s->comm, &n, 1);
+    return n;
+}
+
+static void rebuild(struct sim *s)
+{
+    particle_build(s);
+    pairs_carry(s->dev, s->pairs, s->particles, &s->owners->old_index);
+    if (s->wall_contacts) wall_contacts_carry(s->dev, s->wall_contacts, &s->owners->old_index);
+    particle_bind(s);
+}
+
+/* Work is known only from lists, and elements are dealt out by those of before; where the new ones show that it was not enough, by these at once. */
+static void deal(struct sim *s, const struct cells_bounds *now)
+{
+    struct balance *b = s->balance;
+    bool is_due = balance_is_due(b);
+    balance_begin(b);
+    balance_end(b, is_due, move(s, *now, is_due));
+    account(s);
+    rebuild(s);
+    if (!balance_is_uneven(b)) return;
+    balance_begin(b);
+    int64_t n_moved = move(s, s->bounds, true);
+    rebuild(s);
+    balance_end(b, true, n_moved);
+}
+
 void particle_regroup(struct sim *s)
 {
     exchange_settle(s->dev, &s->ghosts->exchange);
@@ -137,15 +170,7 @@ void particle_regroup(struct sim *s)
     if (s->features.energy) energy_collect(s);
     adapt_skin(s, smallest_radius(s));
     if (s->wall_contacts) wall_contacts_set_step(s->dev, s->wall_contacts, s->step);
-    bool is_due = balance_is_due(s->balance);
-    balance_begin(s->balance);
-    if (is_due) particle_cut(s);
-    owners_move(s->dev, s->owners, s->cells, s->scan, s->particles, s->pairs, s->wall_contacts, &now);
-    balance_end(s->balance, is_due, count_removed(s));
-    particle_build(s);
-    pairs_carry(s->dev, s->pairs, s->particles, &s->owners->old_index);
-    if (s->wall_contacts) wall_contacts_carry(s->dev, s->wall_contacts, &s->owners->old_index);
-    particle_bind(s);
+    deal(s, &now);
     s->n_rebuild++;
     balance_write(s->balance, (double)s->step * s->dt);
     balance_go_on(s->balance, &s->timers, s->step);

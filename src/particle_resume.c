@@ -29,17 +29,23 @@ static struct frame_table read_elements(struct sim *s)
     return t;
 }
 
-/* Cuts through the places of the last list build, and elements to their owners. */
-static void distribute(struct sim *s, struct frame_table *t)
+/* Cuts through the places of the last list build. */
+static void spread(struct sim *s, const struct frame_table *t)
 {
     const double *reference = frame_table_get(t, "reference");
     double *x = fail_alloc(3 * (size_t)t->n * sizeof *x);
-    int32_t *to = fail_alloc((size_t)t->n * sizeof *to);
     for (int64_t i = 0; i < t->n; i++) memcpy(x + 3 * i, reference + 4 * i, 3 * sizeof *x);
     particle_spread(s, x, t->n);
-    for (int64_t i = 0; i < t->n; i++) to[i] = rcb_owner(s->rcb, x + 3 * i);
-    frame_table_send(t, s->comm, to, 1);
     free(x);
+}
+
+/* Elements to where their places of the last list build are in the tree. */
+static void send(struct sim *s, struct frame_table *t)
+{
+    const double *reference = frame_table_get(t, "reference");
+    int32_t *to = fail_alloc((size_t)t->n * sizeof *to);
+    for (int64_t i = 0; i < t->n; i++) to[i] = rcb_owner(s->rcb, reference + 4 * i);
+    frame_table_send(t, s->comm, to, 1);
     free(to);
 }
 
@@ -136,8 +142,14 @@ void particle_resume(struct sim *s)
     s->skin = h5_read_f64(s->from->reader, "skin");
     s->particles->n_global = elements.n;
     comm_sum_i64(s->comm, &s->particles->n_global, 1);
-    distribute(s, &elements);
+    spread(s, &elements);
+    send(s, &elements);
     place(s, &elements);
+    if (s->comm->n_rank > 1) { /* now that interactions are known */
+        particle_cut(s);
+        send(s, &elements);
+        place(s, &elements);
+    }
     int32_t *owner = frame_table_owners(s->comm, frame_table_get(&elements, "id"), elements.n, s->n_first);
     particle_contacts_restore(s, owner, false);
     if (s->wall_contacts) particle_contacts_restore(s, owner, true);

@@ -90,6 +90,17 @@ class Partition(parallel_runs.Case):
         self.assertEqual(int(lines[-1][4]), record["repartitions"])
         self.assertLessEqual(max(float(line[1]) for line in lines), record["imbalance"]["max"])
 
+    def test_threshold(self):
+        """Elements are dealt out until the lists that steps go on with are shared out evenly enough, not those of before."""
+        worst = {}
+        for every in (0, 1):
+            run = self.good_run(self.scene("column"), 3, "--profile", *keys(every=every, threshold=0.04))
+            with open(os.path.join(run.dir, "run.balance.csv")) as file:
+                worst[every] = max(float(line.split(",")[1]) for line in list(file)[1:])
+            self.assertGreaterEqual(run.record()["imbalance"]["max"], worst[every])
+        self.assertGreater(worst[0], 0.2)
+        self.assertLessEqual(worst[1], 0.04)
+
     def unlike_run(self, scene, before, after, *args):
         """Two ranks, with words of their own before the program and after all others. Returns the record."""
         folder = os.path.join(self.dir, "unlike")
