@@ -4,6 +4,7 @@ mean, interactions cut, what is sent. Where ranks outnumber the machine's cores,
 
     scripts/scaling.py l_box --ranks 1,2,4,8,16 --steps 500
     scripts/scaling.py my/scene.yaml --methods geometric --ranks 1,2,128 --set output.every=0
+    scripts/scaling.py out/l_box --steps 1000                  # from the newest frame of a run
 
 Writes scaling.md, scaling.csv and scaling.png into out/scaling/NAME, beside the runs. Exit code 1 if a run fails or if digests differ."""
 import argparse
@@ -24,7 +25,7 @@ TITLES = ["partition", "ranks", "time [s]", "speed-up", "efficiency [%]", "seed:
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("scene", metavar="CASE|SCENE", help="a folder of cases/, or a scene")
+    parser.add_argument("scene", metavar="CASE|SCENE|DIR", help="a folder of cases/, a scene, or a folder of results")
     parser.add_argument("--ranks", type=study.numbers, default=[1, 2, 4, 8, 16], help="(default: 1,2,4,8,16)")
     parser.add_argument("--methods", default="geometric,interactions,graph", help="partitioners; unknown ones are left out (default: %(default)s)")
     parser.add_argument("--steps", type=int, default=500, help="of each run (default: %(default)s)")
@@ -40,12 +41,22 @@ def arguments():
 def find_scene(word):
     """Path and name."""
     path = study.ROOT / "cases" / word / "scene.yaml" if "/" not in word else pathlib.Path(word)
+    if any(path.glob("frame_[0-9]*.hdf")):
+        return path, path.resolve().name
     if not path.is_file():
         sys.exit(f"scaling: there is no {path}")
     return path, path.parent.name if path.name == "scene.yaml" else path.stem
 
 
-def run_all(options, scene):
+def first_step(scene):
+    """Where runs begin: that of the frame which they go on from."""
+    if scene.is_file():
+        return 0
+    import frames  # here, since VTK takes a second
+    return round(frames.Frame(frames.paths(scene)[-1]).time / study.Record(scene).raw["dt"])
+
+
+def run_all(options, scene, first):
     """(method, ranks) -> record; the fastest of all rounds."""
     found = {}
     for turn in range(options.rounds):
@@ -53,7 +64,7 @@ def run_all(options, scene):
             for ranks in options.ranks:
                 if turn > 0 and (ranks > options.cores or (method, ranks) not in found):
                     continue
-                args = ["--steps", str(options.steps), *["--profile"] * options.profile]
+                args = ["--steps", str(first + options.steps), *["--profile"] * options.profile]
                 for setting in ["output.every=0", f"partition.method={method}", *options.set]:
                     args += ["--set", setting]
                 folder = options.out / f"{method}_{ranks}"
@@ -84,8 +95,9 @@ def row(method, record, base, seed, cores):
 
 def notes(options, found, base, has_seed):
     first = next(iter(found.values()))
+    since = f" from t = {first.raw['resumed']['time']:.4g} s on" if "resumed" in first.raw else ""
     device, cores = first.raw["devices"][0], f"{options.cores} core{'s' if options.cores > 1 else ''}"
-    lines = [f"{first.raw['title']}: {first.elements} elements, {first.raw['interactions']} interactions, {options.steps} steps, "
+    lines = [f"{first.raw['title']}: {first.elements} elements, {first.raw['interactions']} interactions, {options.steps} steps{since}, "
              f"{first.raw['precision']}; {device['name']}, {device['platform_version']}; {cores}.",
              "Time is that of all steps, without set-up and output. Shares are means over ranks; exchange is without wait."]
     if base and base.ranks > 1:
@@ -130,7 +142,7 @@ def main():
     scene, name = find_scene(options.scene)
     options.out = options.out or study.ROOT / "out" / "scaling" / name
     options.out.mkdir(parents=True, exist_ok=True)
-    found, seed = run_all(options, scene), study.SEED.get(name, {})
+    found, seed = run_all(options, scene, first_step(scene)), study.SEED.get(name, {})
     timed = [r for r in found.values() if r.ranks <= options.cores]
     base = min(timed, key=lambda r: (r.ranks, r.loop)) if timed else None
     rows = [row(method, record, base, seed, options.cores) for (method, _), record in found.items()]

@@ -3,6 +3,7 @@ import csv
 import json
 import os
 import pathlib
+import shutil
 import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -28,15 +29,27 @@ def numbers(text):
 
 
 def run(program, scene, folder, ranks, *args):
-    """Runs, replacing what is in the folder; returns exit code and stderr."""
+    """Runs, replacing what is in the folder; a scene that is a folder of results goes on from its newest frame. Returns exit code and stderr."""
     # a core for each rank: else one rank alone would have them all, and two could not be faster
     env = {"POCL_MAX_PTHREAD_COUNT": "1", "POCL_MAX_COMPUTE_UNITS": "1", **os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1",
            "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_btl_vader_single_copy_mechanism": "none"}
-    command = [str(program), "run", str(scene), "-o", str(folder), "--force", "--quiet", *args]
+    command = [str(program), "run", str(scene), "-o", str(folder), "--force"]
+    if scene.is_dir():
+        take_up(scene, folder)
+        command = [str(program), "resume", str(folder)]
+    command += ["--quiet", *args]
     if ranks > 1:
         command = ["mpirun", "-n", str(ranks), "--oversubscribe", "--bind-to", "none", "--mca", "mpi_yield_when_idle", "1", *command]
     done = subprocess.run(command, env=env, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False)
     return done.returncode, done.stderr
+
+
+def take_up(results, folder):
+    """A new folder with what a run goes on from."""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    for path in [*results.glob("*.yaml"), *results.glob("*.csv"), results / "run.json", max(results.glob("frame_[0-9]*.hdf"))]:
+        shutil.copy(path, folder)
 
 
 class Record:
@@ -47,7 +60,8 @@ class Record:
             path = pathlib.Path(given)
             given = json.loads((path / "run.json" if path.is_dir() else path).read_text())
         self.raw = given
-        self.ranks, self.steps, self.elements = given["ranks"], given["steps"], given["elements"]
+        self.ranks, self.elements = given["ranks"], given["elements"]
+        self.steps = given["steps"] - given.get("resumed", {}).get("step", 0)  # that the times are of
         self.loop, self.digest = given["wall_s"]["loop"], given["digest"]
 
     def of(self, *keys, default=None):

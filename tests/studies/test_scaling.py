@@ -16,8 +16,8 @@ DEMOCLES, CASES = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 
 
 class Scaling(unittest.TestCase):
-    def study(self, folder, *args):
-        scene = parallel_scenes.put("few", folder, CASES)
+    def study(self, folder, *args, scene=None):
+        scene = scene or parallel_scenes.put("few", folder, CASES)
         self.out = os.path.join(folder, "study")
         script = os.path.join(HERE, "..", "..", "scripts", "scaling.py")
         return subprocess.run([script, scene, "--steps", "8", "--methods", "geometric", "--out", self.out, *args], capture_output=True, text=True,
@@ -47,6 +47,23 @@ class Scaling(unittest.TestCase):
             self.assertEqual(float(rows[0]["speed-up"]), 1)
             self.assertIn("their times would say nothing", run.stdout)
             self.assertGreater(os.path.getsize(os.path.join(self.out, "scaling.png")), 10000)
+
+    def test_results(self):
+        """From the frame of a run on, on several numbers of ranks: to what that run would have come to."""
+        with tempfile.TemporaryDirectory() as folder:
+            whole = self.study(folder, "--steps", "20", "--ranks", "1", "--program", DEMOCLES)
+            self.assertEqual(whole.returncode, 0, whole.stderr)
+            with open(os.path.join(self.out, "scaling.csv")) as file:
+                digest = [row["digest"] for row in csv.DictReader(file)]
+            first = self.study(folder, "--ranks", "1", "--program", DEMOCLES)
+            self.assertEqual(first.returncode, 0, first.stderr)
+            begun = os.path.join(folder, "begun")
+            os.rename(os.path.join(self.out, "geometric_1"), begun)
+            run = self.study(folder, "--steps", "12", "--ranks", "1,2", "--program", DEMOCLES, scene=begun)
+            self.assertEqual(run.returncode, 0, run.stderr)
+            self.assertIn("12 steps from t = ", run.stdout)
+            with open(os.path.join(self.out, "scaling.csv")) as file:
+                self.assertEqual([row["digest"] for row in csv.DictReader(file)], 2 * digest)
 
     def test_digests(self):
         """Another digest on other ranks does not pass."""
