@@ -6,7 +6,8 @@
  * own.
  *
  * lint: WITH_ENERGY needs fp64
- * lint: WITH_SHEAR_APART requires WITH_VOLUME */
+ * lint: WITH_SHEAR_APART requires WITH_VOLUME
+ * lint: WITH_NYSTROM requires WITH_RK */
 #include "link_account.h"
 
 /* Accelerations of a cell, and what holds it. */
@@ -241,8 +242,7 @@ void link_force(int first, int n, __global const int *list, __global const int *
 #endif
 #if WITH_RK
                 long start_x, long start_v, __global preal *restrict sum_x, __global real *restrict sum_v, preal c_sum_v, preal c_sum_a,
-                preal c_next_v, preal c_next_a, preal c_next_turn, preal c_sum_turn, real c_sum_k, real c_next_k, int is_first, int is_last,
-                int is_nystrom
+                preal c_next_v, preal c_next_a, preal c_next_turn, preal c_sum_turn, real c_sum_k, real c_next_k, int is_first, int is_last
 #else
                 __global const real *kick_table, int at_kick, preal drift
 #endif
@@ -259,7 +259,7 @@ void link_force(int first, int n, __global const int *list, __global const int *
     gravity = v3(gravity_x, gravity_y, gravity_z);
 #endif
 #if WITH_RK
-    struct lattice_stage stage = {c_sum_v, c_sum_a, c_next_v, c_next_a, c_next_turn, c_sum_turn, c_sum_k, c_next_k, is_first, is_last, is_nystrom};
+    struct lattice_stage stage = {c_sum_v, c_sum_a, c_next_v, c_next_a, c_next_turn, c_sum_turn, c_sum_k, c_next_k, is_first, is_last, WITH_NYSTROM};
 #if WITH_ENERGY
     struct lattice_speed speed = {c_before, c_own};
 #endif

@@ -52,7 +52,7 @@ static void put_table(struct lattice *l, struct buffer *buffer, const char *name
 static void create_state(struct lattice *l)
 {
     size_t n = (size_t)l->layout->plane, n_x = LATTICE_X(l->features.turn), n_set = l->features.rk ? 3 : 2;
-    size_t n_last = l->features.energy && l->scheme->is_nystrom ? LATTICE_V : 0, n_p = l->features.energy && l->features.link_damping ? 2 : 1;
+    size_t n_last = l->features.energy && l->features.nystrom ? LATTICE_V : 0, n_p = l->features.energy && l->features.link_damping ? 2 : 1;
     struct buffer *all[] = {&l->x, &l->v, &l->sum_x, &l->sum_v, &l->pressure, &l->ledger};
     static const char *const name[] = {"lattice x", "lattice v", "lattice sums of x", "lattice sums of v", "lattice pressure", "lattice ledger"};
     const size_t bytes[] = {n_set * n_x * n * lattice_x_bytes(l), n_set * LATTICE_V * n * lattice_v_bytes(l),
@@ -98,7 +98,6 @@ struct launch *lattice_launch(struct lattice *l, const struct program *program, 
     launch_set_int_if(k, "n_run", l->layout->n_run);
     launch_set_int_if(k, "n_kind", l->n_kind);
     launch_set_int_if(k, "at_rows", 0);
-    launch_set_int_if(k, "is_nystrom", l->scheme->is_nystrom);
     for (int a = 0; a < 3; a++) launch_set_real_if(k, gravity[a], l->options.gravity[a]);
     if (launch_has(k, "start_x")) {
         launch_set_long(k, "start_x", 0);

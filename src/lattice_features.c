@@ -26,6 +26,7 @@ struct lattice_features lattice_features_of(const struct lattice_cells *cells, c
     for (int a = 0; a < 3; a++) f.gravity |= fabs(o->gravity[a]) > 0;
     f.kinds = cells->n_kind > 1;
     f.rk = lattice_schemes_table(o->scheme)->is_rk;
+    f.nystrom = lattice_schemes_table(o->scheme)->is_nystrom;
     f.breakage = o->strength != NULL;
     f.energy = o->energy;
     return f;
@@ -38,7 +39,7 @@ static const struct {
     const char *name;
     size_t at;
 } feature_table[] = {FEATURE(turn), FEATURE(volume), FEATURE(shear_apart), FEATURE(twist_apart), FEATURE(link_damping), FEATURE(mass_damping),
-    FEATURE(fix), FEATURE(loads), FEATURE(gravity), FEATURE(kinds), FEATURE(rk), FEATURE(energy), FEATURE(breakage), {NULL, 0}};
+    FEATURE(fix), FEATURE(loads), FEATURE(gravity), FEATURE(kinds), FEATURE(rk), FEATURE(nystrom), FEATURE(energy), FEATURE(breakage), {NULL, 0}};
 
 const char *lattice_features_name(int i)
 {
@@ -54,9 +55,9 @@ char *lattice_features_options(const struct lattice_features *f, const struct la
 {
     return fail_format("-DREAL_IS_FLOAT=%d -DPOSITION_IS_FLOAT=%d -DWITH_TURN=%d -DWITH_VOLUME=%d -DWITH_SHEAR_APART=%d -DWITH_TWIST_APART=%d "
                        "-DWITH_LINK_DAMPING=%d -DWITH_MASS_DAMPING=%d -DWITH_FIX=%d -DWITH_LOADS=%d -DWITH_GRAVITY=%d -DWITH_KINDS=%d -DWITH_RK=%d "
-                       "-DWITH_ENERGY=%d -DWITH_BREAK=%d -DRUN_AXIS=%d -DBATCH=%d -DBATCH_WIDTH=%d",
+                       "-DWITH_NYSTROM=%d -DWITH_ENERGY=%d -DWITH_BREAK=%d -DRUN_AXIS=%d -DBATCH=%d -DBATCH_WIDTH=%d",
         f->real_is_float, f->position_is_float, f->turn, f->volume, f->shear_apart, f->twist_apart, f->link_damping, f->mass_damping, f->fix,
-        f->loads, f->gravity, f->kinds, f->rk, f->energy, f->breakage, layout->axis, layout->run,
+        f->loads, f->gravity, f->kinds, f->rk, f->nystrom, f->energy, f->breakage, layout->axis, layout->run,
         f->real_is_float && f->position_is_float && layout->run % 16 == 0 ? 16 : 8);
 }
 

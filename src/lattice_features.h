@@ -37,9 +37,9 @@ struct lattice_features {
     bool shear_apart, twist_apart; /* links with kn != ks, kt != kb */
     bool link_damping, mass_damping;
     bool fix, loads, gravity;
-    bool kinds;  /* more than one */
-    bool rk;     /* stages of a Runge-Kutta scheme */
-    bool energy; /* work and losses are accounted for */
+    bool kinds;       /* more than one */
+    bool rk, nystrom; /* stages of a Runge-Kutta scheme; of Nystrom's */
+    bool energy;      /* work and losses are accounted for */
     bool breakage;
 };
 

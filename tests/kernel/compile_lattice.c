@@ -1,5 +1,5 @@
-/* compile_lattice lattice PRECISION small|turn [volume] [rk4]: one step of a small block, so that the driver compiles its kernels. Leaves with 77
- * where the platform is not pocl or has no doubles. */
+/* compile_lattice lattice PRECISION small|turn [volume] [rk4|rkn4] [energy]: one step of a small block, so that the driver compiles its kernels.
+ * Leaves with 77 where the platform is not pocl or has no doubles. */
 #include <stdio.h>
 #include <string.h>
 
@@ -18,6 +18,8 @@ int main(int argc, char **argv)
         o.turn |= !strcmp(argv[i], "turn");
         if (!strcmp(argv[i], "volume")) m.poisson = 0.3;
         if (!strcmp(argv[i], "rk4")) o.scheme = LATTICE_RK4;
+        if (!strcmp(argv[i], "rkn4")) o.scheme = LATTICE_RKN4;
+        o.energy |= !strcmp(argv[i], "energy");
     }
     struct device *dev = device_open(comm, NULL, false, false);
     if (!dev->is_pocl || (!o.real_is_float && !dev->fp64)) {
