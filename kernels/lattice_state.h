@@ -148,22 +148,20 @@ LAW struct link_cell lattice_stage_next(
     struct link_cell next = start;
     pvec3 v = p3_of_v3(now.v), w = p3_of_v3(now.w), pa = p3_of_v3(a), pb = p3_of_v3(b), shift, r;
 
-    if (WITH_TURN) w = c.is_nystrom ? w : quat_rate(sum->r, w);
+    if (WITH_TURN) w = p3_choose(c.is_nystrom, w, quat_rate(sum->r, w));
     sum->u = p3_fma(c.sum_a, pa, p3_fma(c.sum_v, v, sum->u));
     sum->turn = quat_rkn4(p3_fma(c.sum_a, pb, p3_fma(c.sum_v, w, sum->turn)), w, pb, c.sum_turn);
     sum->v = v3_fma(c.sum_k, a, sum->v);
     sum->w = v3_fma(c.sum_k, b, sum->w);
-    if (c.is_nystrom && c.is_first) {
-        v = p3_of_v3(mean_v);
-        w = p3_of_v3(mean_w);
-    }
-    shift = c.is_last ? sum->u : p3_fma(c.next_a, pa, p3_scale(c.next_v, v));
-    r = c.is_last ? sum->turn : quat_rkn4(p3_fma(c.next_a, pb, p3_scale(c.next_v, w)), w, pb, c.next_turn);
+    v = p3_choose(c.is_nystrom && c.is_first, p3_of_v3(mean_v), v);
+    w = p3_choose(c.is_nystrom && c.is_first, p3_of_v3(mean_w), w);
+    shift = p3_choose(c.is_last, sum->u, p3_fma(c.next_a, pa, p3_scale(c.next_v, v)));
+    r = p3_choose(c.is_last, sum->turn, quat_rkn4(p3_fma(c.next_a, pb, p3_scale(c.next_v, w)), w, pb, c.next_turn));
     next.u = p3_add(start.u, shift);
     if (WITH_TURN) next.q = quat_turn(start.q, r);
     else next.theta = p3_add(start.theta, r);
-    next.v = c.is_last ? v3_add(start.v, sum->v) : v3_fma(c.next_k, a, start.v);
-    next.w = c.is_last ? v3_add(start.w, sum->w) : v3_fma(c.next_k, b, start.w);
+    next.v = v3_choose(c.is_last, v3_add(start.v, sum->v), v3_fma(c.next_k, a, start.v));
+    next.w = v3_choose(c.is_last, v3_add(start.w, sum->w), v3_fma(c.next_k, b, start.w));
     sum->r = r;
     return next;
 }

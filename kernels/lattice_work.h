@@ -159,10 +159,8 @@ struct lattice_speed {
 };
 LAW struct link_cell lattice_speed_of(struct link_cell c, vec3 a, vec3 b, vec3 before_a, vec3 before_b, struct lattice_speed k, int is_first)
 {
-    if (!is_first) {
-        c.v = v3_fma(k.before, before_a, c.v);
-        c.w = v3_fma(k.before, before_b, c.w);
-    }
+    c.v = v3_choose(is_first, c.v, v3_fma(k.before, before_a, c.v));
+    c.w = v3_choose(is_first, c.w, v3_fma(k.before, before_b, c.w));
     c.v = v3_fma(k.own, a, c.v);
     c.w = v3_fma(k.own, b, c.w);
     return c;

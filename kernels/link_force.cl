@@ -86,14 +86,19 @@ LAW struct link_cell lattice_move(int mixed, struct link_cell c, struct lattice_
 #else
 LAW struct lattice_sums lattice_sums_of(__global const preal *sum_x, __global const real *sum_v, size_t plane, size_t i, int is_first)
 {
-    struct lattice_sums s;
+    struct lattice_sums s, zero = lattice_sums_zero();
     s.u = p3(sum_x[i], sum_x[plane + i], sum_x[2 * plane + i]);
     s.turn = p3(sum_x[3 * plane + i], sum_x[4 * plane + i], sum_x[5 * plane + i]);
     s.r = p3(0, 0, 0);
     if (WITH_TURN) s.r = p3(sum_x[6 * plane + i], sum_x[7 * plane + i], sum_x[8 * plane + i]);
     s.v = v3(sum_v[i], sum_v[plane + i], sum_v[2 * plane + i]);
     s.w = v3(sum_v[3 * plane + i], sum_v[4 * plane + i], sum_v[5 * plane + i]);
-    return is_first ? lattice_sums_zero() : s;
+    s.u = p3_choose(is_first, zero.u, s.u);
+    s.turn = p3_choose(is_first, zero.turn, s.turn);
+    s.r = p3_choose(is_first, zero.r, s.r);
+    s.v = v3_choose(is_first, zero.v, s.v);
+    s.w = v3_choose(is_first, zero.w, s.w);
+    return s;
 }
 
 LAW void lattice_sums_keep(__global preal *sum_x, __global real *sum_v, size_t plane, size_t i, struct lattice_sums s)

@@ -13,7 +13,8 @@ int main(int argc, char **argv)
     struct lattice_options o = {.dt = 1e-8, .material = &m, .n_material = 1, .n_row = 1};
     const int size[3] = {16, 4, 4};
     if (argc < 4) return EXIT_USAGE;
-    o.real_is_float = o.position_is_float = !strcmp(argv[2], "single");
+    o.position_is_float = !strcmp(argv[2], "single");
+    o.real_is_float = o.position_is_float || !strcmp(argv[2], "mixed");
     for (int i = 3; i < argc; i++) {
         o.turn |= !strcmp(argv[i], "turn");
         if (!strcmp(argv[i], "volume")) m.poisson = 0.3;
@@ -22,7 +23,7 @@ int main(int argc, char **argv)
         o.energy |= !strcmp(argv[i], "energy");
     }
     struct device *dev = device_open(comm, NULL, false, false);
-    if (!dev->is_pocl || (!o.real_is_float && !dev->fp64)) {
+    if (!dev->is_pocl || (!o.position_is_float && !dev->fp64)) {
         printf("%s on %s\n", dev->name, dev->platform_name);
         return 77;
     }

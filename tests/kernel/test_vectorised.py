@@ -26,7 +26,10 @@ CASES = [
     ("lattice", "double", ["small", "volume", "rk4"]),
     ("lattice", "double", ["small", "energy"]),
     ("lattice", "double", ["turn", "volume", "rk4", "energy"]),
+    ("lattice", "single", ["turn", "volume", "rk4", "energy"]),
+    ("lattice", "mixed", ["turn", "volume", "rk4", "energy"]),
     ("lattice", "double", ["small", "rkn4", "energy"]),
+    ("lattice", "single", ["turn", "rkn4", "energy"]),
 ]
 
 
