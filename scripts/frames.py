@@ -68,9 +68,12 @@ class Frame:
         """m/s, or nothing for a pure number."""
         shown = "VTKHDF/PointData/" if self.corners is None or name == "displacement" else "VTKHDF/CellData/"
         place = shown if name in self._field else f"democles/{self._table()}/"
-        unit = _attribute(self.path, place + name, "unit")
+        unit = _attribute(self.path, place + name, "unit").split(b"\0")[0].decode()
         return "" if unit == "1" else unit
 
+    def step(self):
+        """Of the run, from its start on."""
+        return int.from_bytes(_attribute(self.path, "democles", "step"), "little", signed=True)
 
     def _table(self):
         return "elements" if self.corners is None else "cells"
@@ -106,21 +109,21 @@ def _library():
 _hdf5 = _library()
 
 
-def _attribute(path, dataset, name):
-    """A fixed-length string attribute, or "" where there is none."""
+def _attribute(path, owner, name):
+    """The bytes of an attribute, or none where there is none. Numbers are little-endian."""
     file = _hdf5.H5Fopen(path.encode(), 0, 0) if _hdf5 else -1
-    attribute = _hdf5.H5Aopen_by_name(file, dataset.encode(), name.encode(), 0, 0) if file >= 0 else -1
-    text = ""
+    attribute = _hdf5.H5Aopen_by_name(file, owner.encode(), name.encode(), 0, 0) if file >= 0 else -1
+    value = b""
     if attribute >= 0:
         kind = _hdf5.H5Aget_type(attribute)
-        buffer = ctypes.create_string_buffer(_hdf5.H5Tget_size(kind) + 1)
+        buffer = ctypes.create_string_buffer(_hdf5.H5Tget_size(kind))
         _hdf5.H5Aread(attribute, kind, buffer)
-        text = buffer.value.decode()
+        value = buffer.raw
         _hdf5.H5Tclose(kind)
         _hdf5.H5Aclose(attribute)
     if file >= 0:
         _hdf5.H5Fclose(file)
-    return text
+    return value
 
 
 def _dataset(path, name):

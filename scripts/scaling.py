@@ -53,7 +53,7 @@ def first_step(scene):
     if scene.is_file():
         return 0
     import frames  # here, since VTK takes a second
-    return round(frames.Frame(frames.paths(scene)[-1]).time / study.Record(scene).raw["dt"])
+    return frames.Frame(frames.paths(scene)[-1]).step()
 
 
 def run_all(options, scene, first):

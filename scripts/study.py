@@ -48,7 +48,7 @@ def take_up(results, folder):
     """A new folder with what a run goes on from."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    for path in [*results.glob("*.yaml"), *results.glob("*.csv"), results / "run.json", max(results.glob("frame_[0-9]*.hdf"))]:
+    for path in [*results.glob("*.yaml"), *results.glob("*.csv"), max(results.glob("frame_[0-9]*.hdf"))]:
         shutil.copy(path, folder)
 
 
