@@ -81,7 +81,8 @@ class Record:
 
     def shares(self):
         """Of the loop's time [%], means over ranks."""
-        return [100 * self.per_step(part) * self.steps / self.loop for part in PARTS] if self.loop > 0 else [0.0] * len(PARTS)
+        loop = self.raw["timers"]["loop"]["mean"]
+        return [100 * self.per_step(part) * self.steps / loop for part in PARTS] if loop > 0 else [0.0] * len(PARTS)
 
     def imbalance(self):
         """U, mean over the run."""

@@ -19,7 +19,7 @@ def spread(value):
 
 def record(ranks, loop, compute, regroup, exchange=0.0, wait=0.0, launches=0, imbalance=0.0, sent=(0, 0, 0, 0), kernels=None):
     """100 steps of 1,000 elements. sent: bytes, messages, neighbours, elements."""
-    timers = {"compute": compute, "exchange": exchange, "wait": wait, "regroup": regroup}
+    timers = {"loop": loop, "compute": compute, "exchange": exchange, "wait": wait, "regroup": regroup}
     raw = {"title": "", "ranks": ranks, "steps": 100, "elements": 1000, "wall_s": {"loop": loop}, "digest": "0", "devices": [{"name": "a device"}],
            "timers": {name: spread(value) for name, value in timers.items()}, "plain_steps": {"steps": 50, "launches": 50 * launches * ranks},
            "imbalance": {"mean": imbalance, "max": imbalance},

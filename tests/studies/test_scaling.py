@@ -43,7 +43,7 @@ class Scaling(unittest.TestCase):
                 self.assertEqual([bool(cell) for cell in timed], 5 * [record["ranks"] <= 2])
                 if timed[0]:
                     shares = [float(row[part + " [%]"]) for part in ("compute", "exchange", "wait", "regroup")]
-                    self.assertAlmostEqual(sum(shares), 100, delta=1)  # timers of ranks, mean, against the loop of rank 0
+                    self.assertAlmostEqual(sum(shares), 100, places=6)
             self.assertEqual(float(rows[0]["speed-up"]), 1)
             self.assertIn("their times would say nothing", run.stdout)
             self.assertGreater(os.path.getsize(os.path.join(self.out, "scaling.png")), 10000)
