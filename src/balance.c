@@ -107,9 +107,9 @@ bool balance_is_due(const struct balance *b)
 
 bool balance_is_uneven(struct balance *b)
 {
-    bool is_time = b->dealt_at == b->step || b->step - b->dealt_at >= b->scene->every;
     if (b->comm->n_rank == 1 || b->scene->every == 0 || b->scene->every == PARTITION_AUTO) return false;
-    if (!is_time || b->quality.imbalance <= b->scene->threshold) return false;
+    if (b->dealt_at != b->step && b->step - b->dealt_at < b->scene->every) return false;
+    if (b->quality.imbalance <= b->scene->threshold) return false;
     b->quality = b->before;
     return true;
 }
