@@ -50,6 +50,7 @@ def arguments():
                         help="pixels (default: 1600x1000, film 1280x720)")
     parser.add_argument("--fps", type=numbers(1, None, float, lambda v: v[0] > 0, "a number above 0"),
                         help="frames of the film per second (default: a film of about 8 s, 5 to 25 per second)")
+    parser.add_argument("--plain", action="store_true", help="no title, times, colour bar and scale")
     parser.add_argument("-o", metavar="FILE", dest="out", help="picture or film to write")
     return parser.parse_args()
 
@@ -102,7 +103,7 @@ class Colours:
         everything = everything[numpy.isfinite(everything)]
         self.unit = samples[0].unit(self.name)
         self.is_vector = samples[0].field(self.name).ndim > 1
-        self.levels = 256
+        self.levels, self.is_cut = 256, False
         self.low, self.high = self.ends(everything, numpy.issubdtype(samples[0].field(self.name).dtype, numpy.integer)) if not ends else ends
 
     def ends(self, values, is_integer):
@@ -116,6 +117,7 @@ class Colours:
         if self.is_vector:
             low = 0.0
         high = float(numpy.percentile(values, 99.5))
+        self.is_cut = high < float(values.max())
         if not high > low:
             high = low + max(abs(low), 1.0) * 1e-3 if not self.is_vector else 1.0
         return low, high
@@ -129,13 +131,19 @@ class Colours:
         return matplotlib.colors.ListedColormap(plt.get_cmap("viridis")(numpy.linspace(0.16, 1, self.levels)))
 
     def prefix(self):
-        """(1e6, "M") for millions of pascals; other units are written without."""
+        """(1e6, "M") for millions of pascals, (1e-3, "m") for small speeds: the prefix that leaves the largest value between 1 and 1000.
+        Kilograms have one already; numbers without a unit take none."""
         large = max(abs(self.low), abs(self.high))
-        return next(((f, p) for f, p in ((1e9, "G"), (1e6, "M"), (1e3, "k")) if self.unit == "Pa" and large >= f), (1, ""))
+        if not self.unit or self.unit.startswith("kg") or 0.1 <= large < 1000:
+            return 1, ""
+        prefixes = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1, ""), (1e-3, "m"), (1e-6, "\u00b5"), (1e-9, "n"))
+        return next((p for p in prefixes if large >= p[0]), prefixes[-1])
 
     def label(self, prefix=""):
-        name = {"von_mises": "von Mises stress"}.get(self.name, self.name.replace("_", " "))
-        return f"{name} [{prefix}{self.unit}]" if self.unit else name
+        known = {"von_mises": "von Mises stress", "velocity": "speed", "angular_velocity": "angular speed"}
+        name = known.get(self.name, self.name.replace("_", " "))
+        share = ", largest 0.5 % in the last colour" if self.is_cut else ""
+        return (f"{name} [{prefix}{self.unit}]" if self.unit else name) + share
 
 
 def magnification(samples):
@@ -162,10 +170,10 @@ def extent(samples, walls, warp):
             r = frame.field("radius")[:, None]
             low, high = numpy.minimum(low, (frame.points - r).min(axis=0)), numpy.maximum(high, (frame.points + r).max(axis=0))
         for wall in walls:
-            ends = render_walls.bounds(wall) if render_walls.is_there(wall, frame.time) else None
-            if ends:
+            points = render_walls.vertices(wall) if render_walls.is_there(wall, frame.time) else None
+            if points is not None:
                 rotation, translation = render_walls.pose(wall, frame.time)
-                placed = corners_of(*ends) @ rotation.T + translation
+                placed = points @ rotation.T + translation
                 low, high = numpy.minimum(low, placed.min(axis=0)), numpy.maximum(high, placed.max(axis=0))
     if not numpy.all(numpy.isfinite(low)):
         low, high = -numpy.ones(3), numpy.ones(3)
@@ -183,14 +191,16 @@ def time_text(time, end):
 
 
 class Layout:
-    """A page in pixels: title above, n panels, colour bar and scale below. All panels have the same scale."""
+    """A page in pixels: title above, n panels, colour bar and scale below. All panels have the same scale. plain: the panels alone."""
 
-    def __init__(self, width, height, n, title, colours, axes, low, high):
+    def __init__(self, size, n, title, colours, axes, low, high, plain):
+        width, height = size
         self.figure = plt.figure(figsize=(width / 100, height / 100), dpi=100, facecolor="white")
-        self.width, self.height, self.text = width, height, max(height / 62, 8)
-        self.top, self.bottom = (0.07 if title else 0.02), 0.13
+        self.width, self.height, self.plain, self.text = width, height, plain, max(min(width / 100, height / 42), 8)
+        self.line = self.text / 72 * 100 / height  # of text, as a share of the page
+        self.top, self.bottom = (0, 0) if plain else (2.6 * self.line if title else 0.02, 5.4 * self.line)
         spans = numpy.ptp(corners_of(low, high) @ numpy.array(axes[:2]).T, axis=0)
-        label = 2.2 * self.text / 72 * 100  # pixels above each panel, for its time
+        label = 0 if plain else 2.2 * self.text / 72 * 100  # pixels above each panel, for its time
         area_w, area_h = width, height * (1 - self.top - self.bottom)
         scales = []
         for columns in range(1, n + 1):
@@ -206,13 +216,15 @@ class Layout:
             axis = self.figure.add_axes((left / width, 1 - (top + label + panel[1]) / height, panel[0] / width, panel[1] / height))
             axis.axis("off")
             self.images.append(axis.imshow(numpy.full((2, 2, 3), 255, numpy.uint8), extent=(0, 1, 0, 1), aspect="auto", interpolation="antialiased"))
+        if plain:
+            return
         if title:
             self.figure.text(0.02, 1 - self.top / 2, title, size=1.35 * self.text, va="center", weight="bold")
         self.colour_bar(colours)
         self.scale_bar()
 
     def colour_bar(self, colours):
-        axis = self.figure.add_axes((0.3, 0.082, 0.4, 0.02))
+        axis = self.figure.add_axes((0.3, 3.6 * self.line, 0.4, 0.8 * self.line))
         factor, prefix = colours.prefix()
         norm = matplotlib.colors.Normalize(colours.low / factor, colours.high / factor)
         bar = self.figure.colorbar(matplotlib.cm.ScalarMappable(norm, colours.map()), cax=axis, orientation="horizontal")
@@ -228,13 +240,14 @@ class Layout:
         length = max(m * power for m in (1, 2, 5) if m * power <= longest)
         factor, unit = next((f, u) for f, u in ((1, "m"), (1e3, "mm"), (1e6, "µm"), (1e9, "nm")) if length * f >= 0.999 or u == "nm")
         pixels = length * self.pixels_per_metre / self.width
-        line = matplotlib.lines.Line2D((0.02, 0.02 + pixels), (0.092, 0.092), color="black", lw=self.text / 6, solid_capstyle="butt")
+        height = 4 * self.line
+        line = matplotlib.lines.Line2D((0.02, 0.02 + pixels), (height, height), color="black", lw=self.text / 6, solid_capstyle="butt")
         self.figure.add_artist(line)
-        self.figure.text(0.02 + pixels / 2, 0.075, f"{length * factor:g} {unit}", size=0.9 * self.text, ha="center", va="top")
+        self.figure.text(0.02, height - 0.5 * self.line, f"{length * factor:g} {unit}", size=0.9 * self.text, va="top")
 
     def put(self, k, image, text):
         self.images[k].set_data(image)
-        self.labels[k].set_text(text)
+        self.labels[k].set_text("" if self.plain else text)
 
     def pixels(self):
         """[height][width][3] bytes."""
@@ -257,7 +270,7 @@ class Picture:
         title = scene.get("title") or pathlib.Path(options.dir).resolve().name
         if warp != 1 and any(frame.corners is not None for frame in samples):
             title += f" (displacements \u00d7 {warp:g})"
-        self.layout = Layout(*size, n, title, self.colours, axes, low, high)
+        self.layout = Layout(size, n, title, self.colours, axes, low, high, options.plain)
         colour_table = self.colours.map()(numpy.linspace(0, 1, self.colours.levels))
         self.view = View(self.layout.panel, sharpness, axes, (low, high), self.layout.pixels_per_metre, self.walls, colour_table, warp)
 

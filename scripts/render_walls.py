@@ -2,7 +2,7 @@
 import math
 
 import numpy
-from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
@@ -113,15 +113,12 @@ def surface_of(wall, low, high):
     return stl(surface) if "stl" in surface else None
 
 
-def bounds(wall):
-    """Lowest and highest corner of a wall that has an end, at time 0; None for planes."""
+def vertices(wall):
+    """Points [n][3] that span a wall that has an end, at time 0; None for planes."""
     if "plane" in wall["surface"]:
         return None
     data = surface_of(wall, None, None)
-    if data is None:
-        return None
-    b = data.GetBounds()
-    return numpy.array(b[0::2]), numpy.array(b[1::2])
+    return None if data is None else vtk_to_numpy(data.GetPoints().GetData()).astype(float)
 
 
 def is_there(wall, time):

@@ -70,7 +70,9 @@ class Walls(unittest.TestCase):
 
     def test_cylinder_and_box(self):
         self.assertEqual(render_walls.box({"min": [0, 1, 2], "max": [3, 4, 5]}).GetBounds(), (0, 3, 1, 4, 2, 5))
-        tube = render_walls.cylinder({"from": [0, 0, 1], "to": [0, 0, 3], "radius": 0.5})
+        surface = {"from": [0, 0, 1], "to": [0, 0, 3], "radius": 0.5}
+        self.assertAlmostEqual(numpy.linalg.norm(render_walls.vertices({"surface": {"cylinder": surface}})[:, :2], axis=1).max(), 0.5, 6)
+        tube = render_walls.cylinder(surface)
         at = numpy.array([tube.GetPoint(k) for k in range(tube.GetNumberOfPoints())])
         numpy.testing.assert_allclose(numpy.hypot(at[:, 0], at[:, 1]), 0.5)
         self.assertEqual(sorted(set(at[:, 2])), [1, 3])
@@ -108,6 +110,13 @@ class Drawing(unittest.TestCase):
         left, right = image[100, 55], image[100, 145]
         self.assertGreater(left[0], left[2] + 100)
         self.assertGreater(right[2], right[0] + 100)
+
+    def test_prefix_suits_the_largest_value(self):
+        for unit, high, expected in (("Pa", 8e7, (1e6, "M")), ("m/s", 0.13, (1, "")), ("m", 2e-3, (1e-3, "m")), ("N", 7e-5, (1e-6, "\u00b5")),
+                                     ("kg", 1e-6, (1, "")), ("", 1e6, (1, ""))):
+            colours = render.Colours.__new__(render.Colours)
+            colours.low, colours.high, colours.unit = 0.0, high, unit
+            self.assertEqual(colours.prefix(), expected, unit)
 
     def test_nearer_sphere_hides(self):
         image = view().draw(Made([[0, 0.5, 0], [0, -0.5, 0]], [0.4, 0.4]), numpy.array([0.0, 1.0]), (0, 1)).astype(int)
