@@ -8,7 +8,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "../src/fail.h"
+#include "fail.h"
 
 /* What Open MPI has to be told before MPI_Init; a setting of the user's own wins.
  *

@@ -12,7 +12,7 @@
 #include <limits.h>
 #include <stdlib.h>
 
-#include "../src/fail.h"
+#include "fail.h"
 
 enum { TAG_ONCE = 1, TAG_STEP = 2 };
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../src/fail.h"
+#include "fail.h"
 
 #ifndef MIGRATE_PIECE
 #define MIGRATE_PIECE (1LL << 30) /* [byte] largest message: MPI counts are int. A test takes less. */

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../src/fail.h"
+#include "comm/fail.h"
 
 /* Recursive bisection, the best of four: the direct k-way method cut 8,000 pairs where this cut 6,200 (16 parts of 64 leaves of the L-box), in no
  * less time, and may leave parts empty. SLACK: imbalance that METIS may leave, in thousandths. */

@@ -6,7 +6,7 @@
 #ifndef DEMOCLES_GRAPH_H
 #define DEMOCLES_GRAPH_H
 
-#include "../comm/comm.h"
+#include "comm/comm.h"
 
 /* With 64 leaves and more METIS finds worse cuts, with 8 parts are up to 15 % too large. */
 enum { GRAPH_LEAVES = 32 };

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../comm/migrate.h"
-#include "../src/fail.h"
+#include "comm/migrate.h"
+#include "comm/fail.h"
 #include "partition.h"
 
 /* Cuts of one graph with weights that are raised in between, and how finely weights are kept while they are. */

@@ -2,7 +2,7 @@
 #ifndef DEMOCLES_PARTITION_H
 #define DEMOCLES_PARTITION_H
 
-#include "../comm/comm.h"
+#include "comm/comm.h"
 
 /* A tree of cuts, the same on every rank. Node k: a point with x[axis] < cut goes to `left`, else to `right`; a child c >= 0 is a node, c < 0 is the
  * leaf -1 - c. A leaf is a rank, or what rcb_assign gives to one. No nodes: everything is leaf 0. Flat arrays, ready for a device. */

@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-#include "../src/fail.h"
+#include "comm/fail.h"
 
 double partition_imbalance(const int64_t *work, const int64_t *share, int n)
 {

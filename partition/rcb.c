@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../src/fail.h"
+#include "comm/fail.h"
 
 enum { DIGIT = 256, N_DIGIT = 8 };
 

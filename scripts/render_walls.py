@@ -34,7 +34,7 @@ def polygons(points, faces):
 
 
 def rectangle_axes(normal):
-    """In-plane axes as src/walls.h has them: leave out the coordinate axis nearest to the normal, project the first of the other two."""
+    """In-plane axes as src/shape/walls.h has them: leave out the coordinate axis nearest to the normal, project the first of the other two."""
     size = numpy.abs(normal)
     left_out = max((2, 1, 0), key=lambda a: size[a])  # z before y before x where equal
     first, second = [a for a in range(3) if a != left_out]
@@ -129,7 +129,7 @@ def is_there(wall, time):
 
 
 def pose(wall, time):
-    """4x4 matrix from the wall's frame to its place at a time: as place_at of src/walls_pose.c."""
+    """4x4 matrix from the wall's frame to its place at a time: as place_at of src/shape/walls_pose.c."""
     motion = wall.get("motion") or {}
     shift = time * vector(motion.get("velocity", (0, 0, 0)))
     swing, turn = motion.get("oscillation"), motion.get("rotation")

@@ -1,5 +1,5 @@
 /* Makes one MPI call that fails on rank 1: check_mpi has to end the job. Run by test_mpi_error. */
-#include "comm.h"
+#include "comm/comm.h"
 
 int main(int argc, char **argv)
 {

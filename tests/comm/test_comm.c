@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "../mpi_check.h"
-#include "comm.h"
+#include "comm/comm.h"
 
 static void reductions(const struct comm *comm)
 {

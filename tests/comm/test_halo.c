@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "../mpi_check.h"
-#include "halo.h"
+#include "comm/halo.h"
 
 struct record {
     int64_t gid;

@@ -2,7 +2,7 @@
 #include <stdlib.h>
 
 #include "../mpi_check.h"
-#include "migrate.h"
+#include "comm/migrate.h"
 
 static int64_t size_of(int round, int from, int to)
 {

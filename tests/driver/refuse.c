@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fail.h"
-#include "launch.h"
+#include "comm/fail.h"
+#include "device/launch.h"
 
 static bool hide_fp64;
 

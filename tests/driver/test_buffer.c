@@ -7,7 +7,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "buffer.h"
+#include "device/buffer.h"
 
 static struct device *dev;
 

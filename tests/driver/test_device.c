@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "../mpi_check.h"
-#include "device.h"
+#include "device/device.h"
 
 static void properties(const struct device *dev)
 {

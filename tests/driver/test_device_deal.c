@@ -6,7 +6,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "device_find.h"
+#include "device/device_find.h"
 
 static struct device_entry entry(
     int platform, int index, const char *platform_name, const char *name, cl_device_type type, bool fp64, const char *bus)

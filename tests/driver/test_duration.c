@@ -4,7 +4,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "duration.h"
+#include "base/duration.h"
 
 static void good(void **state)
 {

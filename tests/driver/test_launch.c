@@ -7,7 +7,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "launch.h"
+#include "device/launch.h"
 
 static struct device *dev;
 static const char *const sources[] = {"scale.cl", NULL};

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "../mpi_check.h"
-#include "launch.h"
+#include "device/launch.h"
 
 static const char *const sources[] = {"scale.cl", NULL};
 

@@ -8,7 +8,7 @@
 #include <unistd.h>
 #include <cmocka.h>
 
-#include "signals.h"
+#include "base/signals.h"
 
 static void marks(void **state)
 {

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "../mpi_check.h"
-#include "fail.h"
+#include "comm/fail.h"
 
 static double uniform(uint64_t *key)
 {
@@ -70,7 +70,8 @@ static void put(char *at, bool is_float, int k, double x)
 
 void account_write_elements(struct sim *s, const struct account_state *a)
 {
-    const struct features *f = &s->features;
+    struct particle_run *run = s->particle;
+    const struct features *f = &run->features;
     int n_owned, *local = local_numbers(a, s->comm->n_rank > 1 ? s->comm->rank : 0, s->comm->n_rank, &n_owned);
     size_t bytes = 4 * particles_preal(f) + (f->spin ? 8 : 4) * particles_real(f);
     char *state = fail_alloc(N_ELEMENT * bytes);
@@ -87,9 +88,9 @@ void account_write_elements(struct sim *s, const struct account_state *a)
         put(tail, f->real_is_float, 3, a->inverse_m[i]);
         gid[local[i]] = i;
     }
-    s->particles->n_owned = n_owned;
-    buffer_write(s->dev, &s->particles->field[FIELD_STATE].now, 0, N_ELEMENT * bytes, state);
-    buffer_write(s->dev, &s->particles->field[FIELD_GID].now, 0, N_ELEMENT * sizeof *gid, gid);
+    run->particles->n_owned = n_owned;
+    buffer_write(s->dev, &run->particles->field[FIELD_STATE].now, 0, N_ELEMENT * bytes, state);
+    buffer_write(s->dev, &run->particles->field[FIELD_GID].now, 0, N_ELEMENT * sizeof *gid, gid);
     free(state);
     free(gid);
     free(local);
@@ -97,7 +98,8 @@ void account_write_elements(struct sim *s, const struct account_state *a)
 
 static void write_pairs(struct sim *s, const struct account_state *a, int rank, int n_rank)
 {
-    struct pair_list *l = &s->pairs->now;
+    struct particle_run *run = s->particle;
+    struct pair_list *l = &run->pairs->now;
     int n_owned, *local = local_numbers(a, rank, n_rank, &n_owned), n = 0;
     int *i = fail_alloc((N_PAIR + PAIR_GAP) * sizeof *i), *j = fail_alloc((N_PAIR + PAIR_GAP) * sizeof *j);
     double *ledger = fail_alloc((N_PAIR + PAIR_GAP) * LEDGER_WIDTH * sizeof *ledger);
@@ -121,10 +123,10 @@ static void write_pairs(struct sim *s, const struct account_state *a, int rank, 
     l->n_boundary = l->n_mine = n - l->first_boundary;
     buffer_reserve(s->dev, &l->pair_i, (size_t)l->capacity * sizeof *i);
     buffer_reserve(s->dev, &l->pair_j, (size_t)l->capacity * sizeof *j);
-    buffer_reserve(s->dev, &s->pairs->ledger, (size_t)l->capacity * LEDGER_WIDTH * sizeof *ledger);
+    buffer_reserve(s->dev, &run->pairs->ledger, (size_t)l->capacity * LEDGER_WIDTH * sizeof *ledger);
     buffer_write(s->dev, &l->pair_i, 0, (size_t)l->capacity * sizeof *i, i);
     buffer_write(s->dev, &l->pair_j, 0, (size_t)l->capacity * sizeof *j, j);
-    buffer_write(s->dev, &s->pairs->ledger, 0, (size_t)l->capacity * LEDGER_WIDTH * sizeof *ledger, ledger);
+    buffer_write(s->dev, &run->pairs->ledger, 0, (size_t)l->capacity * LEDGER_WIDTH * sizeof *ledger, ledger);
     free(i);
     free(j);
     free(ledger);
@@ -133,7 +135,7 @@ static void write_pairs(struct sim *s, const struct account_state *a, int rank, 
 
 static void write_walls(struct sim *s, const struct account_state *a, int rank, int n_rank)
 {
-    struct wall_contacts *w = s->wall_contacts;
+    struct wall_contacts *w = s->particle->wall_contacts;
     int n_owned, *local = local_numbers(a, rank, n_rank, &n_owned), wall_of[N_WALL] = {0, 1};
     size_t capacity = (size_t)n_owned + 16;
     int *candidate = fail_alloc(capacity * sizeof *candidate), *element = fail_alloc(capacity * sizeof *element);
@@ -162,9 +164,10 @@ static void write_walls(struct sim *s, const struct account_state *a, int rank, 
 
 static void init_buffers(struct sim *s)
 {
-    struct buffer *all[] = {&s->particles->field[FIELD_STATE].now, &s->particles->field[FIELD_STATE].spare, &s->particles->field[FIELD_GID].now,
-        &s->particles->field[FIELD_GID].spare, &s->pairs->now.pair_i, &s->pairs->now.pair_j, &s->pairs->ledger, &s->wall_contacts->now.candidate,
-        &s->wall_contacts->now.element, &s->wall_contacts->ledger, &s->wall_contacts->wall_of};
+    struct particle_run *run = s->particle;
+    struct buffer *all[] = {&run->particles->field[FIELD_STATE].now, &run->particles->field[FIELD_STATE].spare, &run->particles->field[FIELD_GID].now,
+        &run->particles->field[FIELD_GID].spare, &run->pairs->now.pair_i, &run->pairs->now.pair_j, &run->pairs->ledger,
+        &run->wall_contacts->now.candidate, &run->wall_contacts->now.element, &run->wall_contacts->ledger, &run->wall_contacts->wall_of};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
         buffer_init(all[k], "made up");
         buffer_reserve(s->dev, all[k], N_ELEMENT * 96);
@@ -174,16 +177,17 @@ static void init_buffers(struct sim *s)
 struct sim *account_sim(struct device *dev, struct comm *comm, const struct account_state *a, const struct features *features, int rank, int n_rank)
 {
     struct sim *s = fail_alloc(sizeof *s);
+    struct particle_run *run = s->particle = fail_alloc(sizeof *run);
     s->dev = dev;
     s->comm = comm;
-    s->features = *features;
+    run->features = *features;
     s->scene = fail_alloc(sizeof *s->scene);
     memcpy(s->scene->gravity, a->gravity, sizeof a->gravity);
-    memcpy(s->domain, a->domain, sizeof a->domain);
-    s->particles = fail_alloc(sizeof *s->particles);
-    s->pairs = fail_alloc(sizeof *s->pairs);
-    s->owners = fail_alloc(sizeof *s->owners);
-    struct wall_contacts *w = s->wall_contacts = fail_alloc(sizeof *w);
+    memcpy(run->domain, a->domain, sizeof a->domain);
+    run->particles = fail_alloc(sizeof *run->particles);
+    run->pairs = fail_alloc(sizeof *run->pairs);
+    run->owners = fail_alloc(sizeof *run->owners);
+    struct wall_contacts *w = run->wall_contacts = fail_alloc(sizeof *w);
     struct walls *walls = fail_alloc(sizeof *walls);
     walls->n_wall = N_WALL;
     w->walls = walls;
@@ -194,13 +198,14 @@ struct sim *account_sim(struct device *dev, struct comm *comm, const struct acco
     account_write_elements(s, a);
     write_pairs(s, a, rank, n_rank);
     write_walls(s, a, rank, n_rank);
-    s->energy = energy_create(s);
+    run->energy = energy_create(s);
     return s;
 }
 
 void account_leave(struct sim *s, const struct account_state *a)
 {
-    struct owners *o = s->owners;
+    struct particle_run *run = s->particle;
+    struct owners *o = run->owners;
     o->removed = fail_alloc(N_ELEMENT * sizeof *o->removed);
     for (int i = 0; i < N_ELEMENT; i++) {
         if (!a->taken[i] || account_owner(i, s->comm->n_rank) != s->comm->rank) continue;
@@ -208,24 +213,25 @@ void account_leave(struct sim *s, const struct account_state *a)
         *r = (struct owners_removed){.gid = i, .radius = a->radius[i], .inverse_m = a->inverse_m[i]};
         memcpy(r->x, a->x[i], sizeof r->x);
         memcpy(r->v, a->v[i], sizeof r->v);
-        if (s->features.spin) memcpy(r->w, a->w[i], sizeof r->w);
+        if (run->features.spin) memcpy(r->w, a->w[i], sizeof r->w);
     }
-    particles_swap(s->particles);
+    particles_swap(run->particles);
     account_write_elements(s, a);
 }
 
 void account_free(struct sim *s)
 {
-    energy_free(s->dev, s->energy);
-    struct wall_contacts *w = s->wall_contacts;
-    struct buffer *all[] = {&s->particles->field[FIELD_STATE].now, &s->particles->field[FIELD_STATE].spare, &s->particles->field[FIELD_GID].now,
-        &s->particles->field[FIELD_GID].spare, &s->pairs->now.pair_i, &s->pairs->now.pair_j, &s->pairs->ledger, &w->now.candidate, &w->now.element,
-        &w->ledger, &w->wall_of};
+    struct particle_run *run = s->particle;
+    energy_free(s->dev, run->energy);
+    struct wall_contacts *w = run->wall_contacts;
+    struct buffer *all[] = {&run->particles->field[FIELD_STATE].now, &run->particles->field[FIELD_STATE].spare, &run->particles->field[FIELD_GID].now,
+        &run->particles->field[FIELD_GID].spare, &run->pairs->now.pair_i, &run->pairs->now.pair_j, &run->pairs->ledger, &w->now.candidate,
+        &w->now.element, &w->ledger, &w->wall_of};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) buffer_free(s->dev, all[k]);
     free((void *)(uintptr_t)w->walls);
     free(w->poses);
     free(w->room_host);
-    free(s->owners->removed);
-    void *own[] = {w, s->owners, s->pairs, s->particles, s->scene, s};
+    free(run->owners->removed);
+    void *own[] = {w, run->owners, run->pairs, run->particles, s->scene, run, s};
     for (size_t k = 0; k < sizeof own / sizeof *own; k++) free(own[k]);
 }

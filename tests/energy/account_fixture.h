@@ -2,8 +2,8 @@
 #ifndef ACCOUNT_FIXTURE_H
 #define ACCOUNT_FIXTURE_H
 
-#include "ledger.h"
-#include "sim.h"
+#include "kernels/contact/ledger.h"
+#include "particle/particle.h"
 
 enum { N_ELEMENT = 5000, N_PAIR = 14000, N_WALL = 2, PAIR_GAP = 30 };
 

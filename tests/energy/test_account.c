@@ -6,7 +6,7 @@
 
 #include "../mpi_check.h"
 #include "account_fixture.h"
-#include "fail.h"
+#include "comm/fail.h"
 
 static struct device *dev;
 static struct comm *comm, alone;
@@ -130,11 +130,11 @@ static void check_totals(void)
     state.pair[17][LEDGER_ROLLING] = -0x1.23456789p-40;
     state.pair[18][LEDGER_BONDS] = -0x1p-80;
     struct sim *s = dealt(&f);
-    size_t bytes = (size_t)s->pairs->now.capacity * LEDGER_WIDTH * sizeof(double);
+    size_t bytes = (size_t)s->particle->pairs->now.capacity * LEDGER_WIDTH * sizeof(double);
     double *ledger = fail_alloc(bytes);
-    buffer_read(dev, &s->pairs->ledger, 0, bytes, ledger);
+    buffer_read(dev, &s->particle->pairs->ledger, 0, bytes, ledger);
     for (int k = 0; k < 3; k++) {
-        buffer_write(dev, &s->pairs->ledger, 0, bytes, ledger);
+        buffer_write(dev, &s->particle->pairs->ledger, 0, bytes, ledger);
         energy_collect(s);
     }
     energy_now(s, &e);
@@ -169,7 +169,7 @@ static void check_leaving(bool wall_goes)
         s->step = wall_goes ? 7 : 6;
         energy_collect(s);
         account_leave(s, &state);
-        int64_t n = s->owners->n_removed;
+        int64_t n = s->particle->owners->n_removed;
         comm_sum_i64(s->comm, &n, 1);
         energy_moved(s, n);
     }
@@ -216,7 +216,7 @@ static void check_wrapping(void)
     state.taken[3] = 1;
     energy_collect(s);
     account_leave(s, &state);
-    int64_t n = s->owners->n_removed;
+    int64_t n = s->particle->owners->n_removed;
     comm_sum_i64(comm, &n, 1);
     CHECK(n == 1);
     energy_moved(s, n);

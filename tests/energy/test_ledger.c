@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "law_contact.h"
+#include "kernels/contact/law_contact.h"
 
 #define R 5e-3
 #define M 1.3e-3

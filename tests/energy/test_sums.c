@@ -8,7 +8,7 @@
 #include <cmocka.h>
 
 #include "../mpi_check.h"
-#include "sums.h"
+#include "kernels/common/sums.h"
 
 /* All of a sum in units of 2^-80. */
 static __int128 whole(struct sum s)

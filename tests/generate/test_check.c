@@ -1,8 +1,8 @@
 /* The checks of the start: coincident elements, elements outside the domain, elements in walls. */
 #include "../walls/scratch.h"
 
-#include "generate.h"
-#include "walls.h"
+#include "particle/generate.h"
+#include "shape/walls.h"
 
 static struct elements_host *generate_from(const char *csv, struct domain domain, struct scene_errors *errors)
 {

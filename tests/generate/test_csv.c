@@ -1,7 +1,7 @@
 /* Elements from CSV files: columns in any order, and for each fault file, line and column. */
 #include "../walls/scratch.h"
 
-#include "generate.h"
+#include "particle/generate.h"
 
 static struct elements_host *read_csv(const char *text, char **path, struct scene_errors *errors)
 {

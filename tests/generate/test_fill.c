@@ -1,7 +1,7 @@
 /* Filled regions: every sphere whole within its region, no two overlapping, the number asked for, from the lowest up, always the same. */
 #include "../walls/scratch.h"
 
-#include "generate.h"
+#include "particle/generate.h"
 
 static struct element_group fill_group(enum region_kind kind)
 {

@@ -4,10 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "batch.h"
-#include "fail.h"
-#include "features.h"
-#include "launch.h"
+#include "kernels/common/batch.h"
+#include "comm/fail.h"
+#include "particle/features.h"
+#include "device/launch.h"
 
 enum { N = 64, MOST = 32, BYTES = 1 << 16 };
 

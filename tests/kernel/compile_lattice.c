@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "fail.h"
+#include "comm/fail.h"
 #include "tests/lattice/lattice_bodies.h"
 
 int main(int argc, char **argv)

@@ -3,8 +3,8 @@
 #define CONTACT_SCENE_H
 
 #include "kernel_fixture.h"
-#include "contact_memory.h"
-#include "contact_table.h"
+#include "kernels/contact/contact_memory.h"
+#include "particle/contact_table.h"
 
 enum { N_MATERIAL = 2 };
 #define STEP 1e-5 /* [s] */

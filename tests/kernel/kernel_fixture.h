@@ -8,11 +8,11 @@
 
 #include "../walls/scratch.h"
 
-#include "element.h"
-#include "features.h"
-#include "launch.h"
+#include "kernels/particle/element.h"
+#include "particle/features.h"
+#include "device/launch.h"
 
-/* One element as kernels/element.h has it. */
+/* One element as kernels/particle/element.h has it. */
 struct record {
     preal x[3], radius;
     real v[3], inverse_m;

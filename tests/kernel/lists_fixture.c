@@ -1,6 +1,6 @@
 #include "lists_fixture.h"
 
-#include "fail.h"
+#include "comm/fail.h"
 
 void lists_open(struct lists *l)
 {

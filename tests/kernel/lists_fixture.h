@@ -3,7 +3,7 @@
 #define LISTS_FIXTURE_H
 
 #include "kernel_fixture.h"
-#include "pairs.h"
+#include "particle/pairs.h"
 
 /* A rank's elements on the host: owned first, then ghosts. */
 struct crowd {

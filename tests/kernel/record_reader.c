@@ -1,7 +1,7 @@
 #include "record_reader.h"
 
-#include "fail.h"
-#include "incidence.h"
+#include "comm/fail.h"
+#include "kernels/particle/incidence.h"
 
 enum { POSITION, INCIDENCE_BEGIN, INCIDENCE, WALL_BEGIN, FORCE, TORQUE, REFERENCE, FLAGS, ORIENTATION, NOTHING, N_BUFFER };
 

@@ -1,7 +1,7 @@
 /* Which of its two ranks computes a pair that a border cuts, where such pairs are then, and in what order their results travel, by brute force. */
 #include "lists_fixture.h"
 
-#include "fail.h"
+#include "comm/fail.h"
 
 enum { N_SEGMENT = 3 };
 static struct lists lists;

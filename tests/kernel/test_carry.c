@@ -3,8 +3,8 @@
  * those of elements that leave and arrive go with them. All others begin with zeros. */
 #include "lists_fixture.h"
 
-#include "fail.h"
-#include "owners_message.h"
+#include "comm/fail.h"
+#include "particle/owners_message.h"
 
 enum { N = 900, N_GHOST = 200, N_LEAVE = 150, N_GONE = 40, N_NEW = 30 };
 static struct lists lists;

@@ -2,9 +2,9 @@
  * kick_drift, and when the lists count as used up. Compiled once for each set of features and each precision, see meson.build. */
 #include "kernel_fixture.h"
 
-#include "fail.h"
-#include "contact_memory.h"
-#include "incidence.h"
+#include "comm/fail.h"
+#include "kernels/contact/contact_memory.h"
+#include "kernels/particle/incidence.h"
 #include "record_reader.h"
 
 enum { N = 500, N_GHOST = 20, N_PAIR = 3000, N_INCIDENCE = 20000, N_AT_WALL = 800, ROOM = 16 /* real per record, or more */ };

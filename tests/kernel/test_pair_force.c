@@ -2,7 +2,7 @@
  * coincide; in both ways of going over a batch.
  * Compiled once for each set of features and each precision, see meson.build. */
 #include "contact_scene.h"
-#include "fail.h"
+#include "comm/fail.h"
 #include "record_reader.h"
 
 enum { N_PAIR = 700, N_INTERIOR = 333, FIRST_BOUNDARY = 384, N_ELEMENT = 2 * N_PAIR, CAPACITY = 720, N_STEP = 5 };

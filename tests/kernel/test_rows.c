@@ -2,8 +2,8 @@
  * Compiled once for each set of periodic directions and each precision, see meson.build. */
 #include "lists_fixture.h"
 
-#include "fail.h"
-#include "incidence.h"
+#include "comm/fail.h"
+#include "kernels/particle/incidence.h"
 
 static struct lists lists;
 static uint64_t seed = 12;

@@ -1,8 +1,8 @@
 /* Prefix sums in place, sizes at and around a block, and the empty one. */
 #include "kernel_fixture.h"
 
-#include "fail.h"
-#include "scan.h"
+#include "comm/fail.h"
+#include "device/scan.h"
 
 static struct device *dev;
 static struct scan *scan;

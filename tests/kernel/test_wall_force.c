@@ -2,14 +2,14 @@
  * touching,
  * parting, bonded, far away. Compiled once for each set of features and each precision, see meson.build. */
 #include "contact_scene.h"
-#include "fail.h"
-#include "law_wall.h"
+#include "comm/fail.h"
+#include "kernels/contact/law_wall.h"
 #include "record_reader.h"
 
 /* The geometry of walls in motion is written for tables in device memory; everything it includes has been included, for the host. */
 #define __OPENCL_VERSION__ 120
 #define __global
-#include "wall_geometry.h"
+#include "kernels/particle/wall_geometry.h"
 #undef __OPENCL_VERSION__
 
 enum { N_ELEMENT = 600, N_CANDIDATE = 900, CAPACITY = 912, N_WALL = 6, N_PRIMITIVE = 40, N_STEP = 5, RESULT_ROOM = 16 };

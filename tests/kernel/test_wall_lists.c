@@ -4,9 +4,9 @@
 #include "lists_fixture.h"
 
 #include "../walls/wall_reference.h"
-#include "contact_memory.h"
-#include "fail.h"
-#include "owners_message.h"
+#include "kernels/contact/contact_memory.h"
+#include "comm/fail.h"
+#include "particle/owners_message.h"
 
 enum { N = 700, GRID = 5, N_TRIANGLE = 2 * GRID * GRID, N_WALL = 7, STEP_NOW = 3 };
 static const double radius = 0.3, dt = 1e-3;

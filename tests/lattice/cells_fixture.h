@@ -6,9 +6,9 @@
 
 #include <math.h>
 
-#include "lattice_cells.h"
-#include "lattice_loads.h"
-#include "law_volume.h"
+#include "lattice/lattice_cells.h"
+#include "lattice/lattice_loads.h"
+#include "kernels/lattice/law_volume.h"
 
 #define LATTICE(bodies)                                                                                                                              \
     "method: lattice\n"                                                                                                                              \

@@ -2,7 +2,7 @@
 #ifndef DEVICE_TESTS_H
 #define DEVICE_TESTS_H
 
-#include "device.h"
+#include "device/device.h"
 
 static struct comm *comm;
 static struct device *dev;

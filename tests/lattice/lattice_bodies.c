@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-#include "fail.h"
+#include "comm/fail.h"
 #include "tests/mpi_check.h"
 
 bool bodies_block(int grid, const int at[3], struct bodies_cell *cell)

@@ -2,7 +2,7 @@
 #ifndef LATTICE_BODIES_H
 #define LATTICE_BODIES_H
 
-#include "lattice.h"
+#include "lattice/lattice.h"
 
 struct bodies_cell {
     int kind, fixed, row; /* fixed: bits of DOF */

@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fail.h"
-#include "lattice_places.h"
+#include "comm/fail.h"
+#include "lattice/lattice_places.h"
 
 _Static_assert((int)CRITERION_SUM == BREAK_SUM && (int)CRITERION_LARGEST == BREAK_LARGEST && (int)CRITERION_STRESS == BREAK_STRESS, "scene and law");
 

@@ -3,9 +3,9 @@
 #define LATTICE_HOST_H
 
 #include "lattice_bodies.h"
-#include "lattice_fate.h"
-#include "lattice_through.h"
-#include "lattice_work.h"
+#include "kernels/lattice/lattice_fate.h"
+#include "kernels/lattice/lattice_through.h"
+#include "kernels/lattice/lattice_work.h"
 
 struct host {
     const struct lattice_cells *cells;
@@ -18,7 +18,7 @@ struct host {
     real *p, *p_still;                    /* [n] lambda Th, and without dashpots */
     struct lattice_ledger *ledger;        /* [n] */
     vec3 *last_a, *last_b;                /* [n] accelerations of the stage before */
-    int *links, *fate;                    /* [n] links left; kernels/lattice_words.h */
+    int *links, *fate;                    /* [n] links left; kernels/lattice/lattice_words.h */
     real *link, *cell, *kick, *rows;      /* tables */
     real *limit;                          /* NULL: nothing breaks */
     double *rows_double;

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "fail.h"
+#include "comm/fail.h"
 #include "lattice_bodies.h"
 
 enum { ROUNDS = 150 };

@@ -3,9 +3,9 @@
 
 #include <string.h>
 
-#include "fail.h"
+#include "comm/fail.h"
 #include "lattice_bodies.h"
-#include "lattice_energy.h"
+#include "lattice/lattice_energy.h"
 #include "device_tests.h"
 
 enum { N_X = 6, ROW_END = 1, ROW_SIDE, ROW_BASE, ROW_PULL, N_ROW };

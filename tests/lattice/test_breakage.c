@@ -2,10 +2,10 @@
  * that never had them. */
 #include "tests/limit/limit_test.h"
 
-#include "fail.h"
+#include "comm/fail.h"
 #include "lattice_bodies.h"
-#include "lattice_break.h"
-#include "lattice_energy.h"
+#include "lattice/lattice_break.h"
+#include "lattice/lattice_energy.h"
 #include "tests/mpi_check.h"
 #include "device_tests.h"
 
@@ -117,7 +117,8 @@ static void shake(struct lattice_motion *x, int64_t n)
         }
 }
 
-/* All links of the second material break at once, those of the first never. What is left is a body with more free faces (kernels/law_volume.h). */
+/* All links of the second material break at once, those of the first never. What is left is a body with more free faces
+ * (kernels/lattice/law_volume.h). */
 static void as_if_never_there(void **state)
 {
     const int size[3] = {17, 9, 4};

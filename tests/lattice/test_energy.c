@@ -3,9 +3,9 @@
 
 #include <string.h>
 
-#include "fail.h"
+#include "comm/fail.h"
 #include "lattice_bodies.h"
-#include "lattice_energy.h"
+#include "lattice/lattice_energy.h"
 #include "device_tests.h"
 
 static struct lattice_energy energy_of(struct lattice *l, const struct lattice_cells *cells)

@@ -1,7 +1,7 @@
 /* Histories: values and means against closed forms, also over corners and backwards; tables from files. */
 #include "../walls/scratch.h"
 
-#include "history.h"
+#include "scene/history.h"
 
 static void constant(void **unused)
 {

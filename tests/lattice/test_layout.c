@@ -2,9 +2,9 @@
  * lists of what is sent that match what is received. Host only. */
 #include "tests/limit/limit_test.h"
 
-#include "fail.h"
+#include "comm/fail.h"
 #include "lattice_bodies.h"
-#include "lattice_words.h"
+#include "kernels/lattice/lattice_words.h"
 #include "tests/mpi_check.h"
 
 enum { MOST_RANKS = 8 };

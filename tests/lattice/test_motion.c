@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "fail.h"
+#include "comm/fail.h"
 #include "lattice_bodies.h"
 #include "device_tests.h"
 

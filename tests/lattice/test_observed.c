@@ -4,10 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fail.h"
+#include "comm/fail.h"
 #include "lattice_bodies.h"
-#include "lattice_energy.h"
-#include "lattice_stress.h"
+#include "lattice/lattice_energy.h"
+#include "lattice/lattice_stress.h"
 #include "tests/mpi_check.h"
 
 static struct device *dev;

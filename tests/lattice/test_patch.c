@@ -4,10 +4,10 @@
 
 #include <string.h>
 
-#include "fail.h"
+#include "comm/fail.h"
 #include "lattice_bodies.h"
-#include "lattice_stress.h"
-#include "quat.h"
+#include "lattice/lattice_stress.h"
+#include "kernels/common/quat.h"
 #include "device_tests.h"
 
 static const double edge = 0.005;

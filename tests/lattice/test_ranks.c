@@ -3,9 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fail.h"
+#include "comm/fail.h"
 #include "lattice_bodies.h"
-#include "lattice_break.h"
+#include "lattice/lattice_break.h"
 #include "tests/mpi_check.h"
 
 static void rows_at(void *context, double t, double from, double to, double *rows)

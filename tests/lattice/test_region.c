@@ -1,7 +1,7 @@
 /* A column through a surface gives what each of its points gives alone: tetrahedra, nested and turned, at random heights and at those of corners. */
 #include "../walls/scratch.h"
 
-#include "region.h"
+#include "shape/region.h"
 
 static void tetrahedron(uint64_t *state, double size, double *corner)
 {

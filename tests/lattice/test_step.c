@@ -4,10 +4,10 @@
 
 #include <string.h>
 
-#include "fail.h"
-#include "lattice_break.h"
+#include "comm/fail.h"
+#include "lattice/lattice_break.h"
 #include "lattice_host.h"
-#include "lattice_stress.h"
+#include "lattice/lattice_stress.h"
 
 static struct comm *comm;
 static const double dt = 1e-4, gravity[3] = {0.5, -1, -9.81};

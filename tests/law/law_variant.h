@@ -2,7 +2,7 @@
 #ifndef DEMOCLES_LAW_VARIANT_H
 #define DEMOCLES_LAW_VARIANT_H
 
-#include "law_contact.h"
+#include "kernels/contact/law_contact.h"
 
 struct variant_input {
     pvec3 D;

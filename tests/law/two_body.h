@@ -3,7 +3,7 @@
 #ifndef DEMOCLES_TWO_BODY_H
 #define DEMOCLES_TWO_BODY_H
 
-#include "law_contact.h"
+#include "kernels/contact/law_contact.h"
 
 struct body {
     pvec3 x;       /* [m] */

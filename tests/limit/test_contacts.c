@@ -6,11 +6,11 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "contact_table.h"
-#include "fail.h"
-#include "law_limit.h"
-#include "particle.h"
-#include "sim.h"
+#include "particle/contact_table.h"
+#include "comm/fail.h"
+#include "kernels/contact/law_limit.h"
+#include "particle/particle.h"
+#include "particle/particle.h"
 
 enum { N = 200 };
 
@@ -116,7 +116,7 @@ static vec3 row3(const double *a)
 
 static double element_bound(const struct sim *s, int e, double dt, double share, int *count)
 {
-    const struct elements_host *h = s->first;
+    const struct elements_host *h = s->particle->first;
     struct limit_sums sums = limit_sums_zero();
     double *w = fail_alloc((size_t)h->n * sizeof *w);
     for (int64_t i = 0; i < h->n; i++) w[i] = 1 / (s->scene->material[h->material[i]].density * 4 / 3 * M_PI * pow(h->radius[i], 3));
@@ -142,7 +142,7 @@ static void compare(const struct sim *s, struct limit_result found, double dt, d
 {
     double least = HUGE_VAL;
     int who = -1, count = 0;
-    for (int e = 0; e < s->first->n; e++) {
+    for (int e = 0; e < s->particle->first->n; e++) {
         double bound = element_bound(s, e, dt, share, &count);
         if (bound < least) {
             least = bound;
@@ -162,8 +162,8 @@ static void compare_each(struct sim *s, double tolerance)
     s->scene = &part;
     for (int k = 0; k < whole->n_contact; k++) {
         part.contact = whole->contact + k;
-        limit_free(s->dev, s->limit);
-        s->limit = limit_create(s);
+        limit_free(s->dev, s->particle->limit);
+        s->particle->limit = limit_create(s);
         compare(s, limit_run(s, 1e-4, 0.8), 1e-4, 0.8, tolerance, 20);
     }
     s->scene = whole;
@@ -180,7 +180,7 @@ static void check(const char *precision, double tolerance)
     assert_non_null(scene);
     struct log *log = log_create(comm, true);
     struct sim_options options = {.dir = dir, .quiet = true, .n_step = -1, .max_time = HUGE_VAL};
-    struct sim *s = sim_create(scene, comm, log, &options);
+    struct sim *s = sim_create(scene, comm, log, &particle_ops, &options);
     static const double dt[] = {0, 1e-4, 1e-2}, share[] = {1, 0.6, 0.9};
     for (int k = 0; k < 3; k++) compare(s, limit_run(s, dt[k], share[k]), dt[k], share[k], tolerance, 300);
     struct limit_result now = particle_limit(s); /* the step is tiny: one run */

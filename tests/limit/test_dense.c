@@ -3,8 +3,8 @@
 
 #include <string.h>
 
-#include "fail.h"
-#include "limit.h"
+#include "comm/fail.h"
+#include "particle/limit.h"
 
 static struct material mortar = {.name = "mortar", .density = 2200, .young = 1e7, .poisson = 0.2};
 static struct contact linear = {

@@ -2,7 +2,7 @@
  * Unit stiffness and mass; true = 2/w_max of the undamped lattice. */
 #include "limit_test.h"
 
-#include "law_limit.h"
+#include "kernels/contact/law_limit.h"
 
 static const double dimer[] = {1, 0, 0}, cubic[] = {1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1};
 static const double fcc[] = {1, 1, 0, 1, -1, 0, -1, 1, 0, -1, -1, 0, 1, 0, 1, 1, 0, -1, -1, 0, 1, -1, 0, -1, 0, 1, 1, 0, 1, -1, 0, -1, 1, 0, -1, -1};

@@ -2,7 +2,7 @@
 #include "limit_test.h"
 
 #include "jacobi.h"
-#include "law_limit.h"
+#include "kernels/contact/law_limit.h"
 
 #if REAL_IS_FLOAT
 #define EPS 2e-4

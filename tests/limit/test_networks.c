@@ -2,7 +2,7 @@
 #include "limit_test.h"
 
 #include "jacobi.h"
-#include "law_limit.h"
+#include "kernels/contact/law_limit.h"
 
 enum { N_MOST = 12, LINKS_MOST = 400, SMALL = 200 };
 

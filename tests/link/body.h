@@ -1,13 +1,13 @@
 /* A small body of cells, evaluated with the laws as a kernel would: each cell looks at its six faces and keeps its own share. The flags of the laws
- * are those of the executable. Its constants come from src/link_constants.h. */
+ * are those of the executable. Its constants come from src/laws/link_constants.h. */
 #ifndef DEMOCLES_LINK_BODY_H
 #define DEMOCLES_LINK_BODY_H
 
-#include "law_break.h"
-#include "law_stress.h"
-#include "law_volume.h"
-#include "lattice_limit.h"
-#include "link_constants.h"
+#include "kernels/lattice/law_break.h"
+#include "kernels/lattice/law_stress.h"
+#include "kernels/lattice/law_volume.h"
+#include "laws/lattice_limit.h"
+#include "laws/link_constants.h"
 #include "tests/limit/limit_test.h"
 
 #define BODY_MOST 700

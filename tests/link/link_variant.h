@@ -2,7 +2,7 @@
 #ifndef DEMOCLES_LINK_VARIANT_H
 #define DEMOCLES_LINK_VARIANT_H
 
-#include "law_link.h"
+#include "kernels/lattice/law_link.h"
 
 struct variant_input {
     int axis;

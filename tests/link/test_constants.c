@@ -1,5 +1,5 @@
 /* Constants of links against the homogenised moduli, the limits of mixed links, and what is refused. */
-#include "link_constants.h"
+#include "laws/link_constants.h"
 #include "tests/limit/limit_test.h"
 
 #include <string.h>

@@ -1,5 +1,5 @@
 /* Rotations: columns against Rodrigues, several turns about a skew axis, and the order of the updates that RK4 and RKN4 make. */
-#include "quat.h"
+#include "kernels/common/quat.h"
 #include "tests/limit/limit_test.h"
 
 #define EPS (sizeof(preal) == 4 ? 6e-8 : 1.2e-16)

@@ -1,5 +1,5 @@
 /* Rows of stress to a tensor: one-sided axes, frames, von Mises. The patch test has the rest. */
-#include "law_stress.h"
+#include "kernels/lattice/law_stress.h"
 #include "tests/limit/limit_test.h"
 
 static vec3 any3(void)

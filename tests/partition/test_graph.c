@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "graph.h"
+#include "partition/graph.h"
 
 enum { MOST = 4096 };
 

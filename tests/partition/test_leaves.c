@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "../mpi_check.h"
-#include "graph.h"
-#include "partition.h"
+#include "partition/graph.h"
+#include "partition/partition.h"
 
 enum { SIDE = 24, N = SIDE * SIDE * SIDE };
 

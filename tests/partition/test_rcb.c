@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "../mpi_check.h"
-#include "partition.h"
+#include "partition/partition.h"
 
 enum { MAX_POINTS = 3000 };
 

@@ -2,8 +2,8 @@
 #ifndef FRAME_FIXTURE_H
 #define FRAME_FIXTURE_H
 
-#include "comm.h"
-#include "snapshot.h"
+#include "comm/comm.h"
+#include "results/snapshot.h"
 
 enum { FIXTURE_STEP = 4200, FIXTURE_INDEX = 7, FIXTURE_LARGEST = 64 };
 

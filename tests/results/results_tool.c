@@ -11,13 +11,13 @@
 #include <string.h>
 #include <sys/resource.h>
 
-#include "fail.h"
+#include "comm/fail.h"
 #include "frame_fixture.h"
-#include "h5_write.h"
-#include "log.h"
-#include "output_dir.h"
-#include "report.h"
-#include "series.h"
+#include "results/h5_write.h"
+#include "results/log.h"
+#include "results/output_dir.h"
+#include "results/report.h"
+#include "results/series.h"
 
 static void limit_files(const char *bytes)
 {

@@ -6,7 +6,7 @@
 
 #include <cmocka.h>
 
-#include "digest.h"
+#include "results/digest.h"
 
 static const int64_t gid[2] = {0, 1};
 static const double x[2][3] = {{0, 0, 0}, {0.005, 0, -0.0}}, v[2][3] = {{1, -0.5, 0.25}, {0, 0, 0}};

@@ -7,10 +7,10 @@
 
 #include <cmocka.h>
 
-#include "fail.h"
+#include "comm/fail.h"
 #include "frame_fixture.h"
-#include "h5_check.h"
-#include "h5_write.h"
+#include "results/h5_check.h"
+#include "results/h5_write.h"
 
 static struct comm *comm;
 static struct fixture fixture;

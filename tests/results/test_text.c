@@ -9,11 +9,11 @@
 
 #include <cmocka.h>
 
-#include "digest.h"
-#include "h5_check.h"
-#include "log.h"
-#include "report.h"
-#include "series.h"
+#include "results/digest.h"
+#include "results/h5_check.h"
+#include "results/log.h"
+#include "results/report.h"
+#include "results/series.h"
 
 static void test_numbers_are_short(void **state)
 {

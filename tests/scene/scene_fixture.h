@@ -15,8 +15,8 @@
 #include <unistd.h>
 #include <cmocka.h>
 
-#include "fail.h"
-#include "scene.h"
+#include "comm/fail.h"
+#include "scene/scene.h"
 
 struct fixture {
     char folder[64];

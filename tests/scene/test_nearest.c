@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "nearest.h"
+#include "base/nearest.h"
 
 static void distances(void **state)
 {

@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "restitution.h"
+#include "laws/restitution.h"
 
 #define ASSERT_NEAR(a, b, tolerance)                                                                                                                 \
     do {                                                                                                                                             \

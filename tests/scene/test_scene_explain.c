@@ -8,8 +8,8 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "scene.h"
-#include "scene_keys.h"
+#include "scene/scene.h"
+#include "scene/scene_keys.h"
 
 /* What scene_explain prints to *stream (stdout or stderr); owned by the caller. */
 static char *explain(const char *key, FILE **stream, bool expected)

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "restitution.h"
+#include "laws/restitution.h"
 
 #define ASSERT_VECTOR(v, x, y, z) assert_true((v)[0] == (x) && (v)[1] == (y) && (v)[2] == (z))
 

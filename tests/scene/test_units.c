@@ -6,7 +6,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "units.h"
+#include "scene/units.h"
 
 static double value_of(const char *text, enum unit_kind kind)
 {

@@ -101,7 +101,7 @@ class Oclgrind(parallel_runs.Case):
         kernels = os.path.join(self.dir, "kernels")
         shutil.copytree(parallel_runs.OWN[1], kernels)
         for name, text, fault, _, _ in FAULTS:
-            path = pathlib.Path(kernels, name)
+            path, = pathlib.Path(kernels).glob(f"*/{name}")
             source = path.read_text()
             self.assertIn(text, source)
             path.write_text(source.replace(text, fault))

@@ -114,7 +114,7 @@ class Partition(parallel_runs.Case):
         """Kernels that take longer and do the same."""
         folder = os.path.join(self.dir, "slow")
         shutil.copytree(os.path.join(os.path.dirname(parallel_runs.CASES), "kernels"), folder)
-        path, begin = os.path.join(folder, "gather.cl"), "    real4 f = (real4)(0), t = (real4)(0);\n"
+        path, begin = os.path.join(folder, "particle", "gather.cl"), "    real4 f = (real4)(0), t = (real4)(0);\n"
         with open(path) as file:
             text = file.read()
         self.assertEqual(text.count(begin), 1)

@@ -105,13 +105,9 @@ class Environment(Failures):
     def test_kernel_that_does_not_build(self):
         """Sources from a folder, one of them broken: options, log and place of the source are said."""
         folder = os.path.join(self.dir, "kernels")
-        os.mkdir(folder)
-        source = os.path.join(os.path.dirname(parallel_runs.CASES), "kernels")
-        for name in os.listdir(source):
-            with open(os.path.join(source, name)) as file:
-                text = file.read()
-            with open(os.path.join(folder, name), "w") as file:
-                file.write(text + ("\nthis is no kernel\n" if name == "gather.cl" else ""))
+        shutil.copytree(os.path.join(os.path.dirname(parallel_runs.CASES), "kernels"), folder)
+        with open(os.path.join(folder, "particle", "gather.cl"), "a") as file:
+            file.write("\nthis is no kernel\n")
         for ranks in (1, 3):
             run = self.run_scene(self.put(robust_jobs.bed()), ranks, env={"DEMOCLES_KERNELS": folder, "TMPDIR": self.dir})
             self.assertEqual(run.code, 4, run.err)

@@ -9,8 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fail.h"
-#include "options.h"
+#include "comm/fail.h"
+#include "app/options.h"
 
 enum { MOST_WORDS = 32 };
 

@@ -8,7 +8,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "scene.h"
+#include "scene/scene.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* The closest point of each kind of wall: it lies on the wall, and of many sampled points of the wall none is nearer. */
 #include "scratch.h"
 
-#include "law_wall.h"
+#include "kernels/contact/law_wall.h"
 
 enum { N_WALL = 40, N_POINT = 20, N_SAMPLE = 60 };
 

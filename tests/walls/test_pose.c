@@ -1,8 +1,8 @@
 /* Motion of walls: the velocity of every point is its displacement over the step, batches are single steps, walls come and go on step boundaries. */
 #include "scratch.h"
 
-#include "law_wall.h"
-#include "walls.h"
+#include "kernels/contact/law_wall.h"
+#include "shape/walls.h"
 
 static const double pi = 3.14159265358979323846;
 

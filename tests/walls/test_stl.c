@@ -1,7 +1,7 @@
 /* STL files: what is read, welded and dropped, what is refused and with which words; the inside of closed surfaces. */
 #include "scratch.h"
 
-#include "solid.h"
+#include "shape/solid.h"
 
 static const double zero[3] = {0, 0, 0}, one[3] = {1, 1, 1}, two[3] = {2, 2, 2};
 

@@ -1,8 +1,8 @@
 /* The table of primitives: order, kinds, bounds, the axes of a rectangle, which triangles share what, messages about files. */
 #include "scratch.h"
 
-#include "law_wall.h"
-#include "walls.h"
+#include "kernels/contact/law_wall.h"
+#include "shape/walls.h"
 
 static void test_axes(void **unused)
 {

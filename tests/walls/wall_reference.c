@@ -1,7 +1,7 @@
 /* The loop over candidates. Compiled in the precision of the test (types.h). */
 #include "wall_reference.h"
 
-#include "fail.h"
+#include "comm/fail.h"
 
 #include <stdlib.h>
 

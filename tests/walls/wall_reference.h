@@ -2,8 +2,8 @@
 #ifndef WALL_REFERENCE_H
 #define WALL_REFERENCE_H
 
-#include "law_wall.h"
-#include "walls.h"
+#include "kernels/contact/law_wall.h"
+#include "shape/walls.h"
 
 /* For the candidates (primitives, ascending) at the given poses [n_wall]: returns how many contacts are left; their primitives go to kept and
  * their geometry in world coordinates to closest, both [n_candidate]. The distance is not tested against the radius. */

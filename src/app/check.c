@@ -1,0 +1,163 @@
+#include "check.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "check_parts.h"
+#include "comm/fail.h"
+#include "particle/limit.h"
+#include "scene/scene_report.h"
+#include "shape/walls.h"
+
+/* Listed pairs per element of a dense packing with the usual skin: half of 8 to 10 neighbours. */
+static const double dense_pairs = 4.5;
+
+void check_head(const struct scene *scene)
+{
+    static const char *const precision[] = {
+        [PRECISION_DEFAULT] = "double", [PRECISION_DOUBLE] = "double", [PRECISION_MIXED] = "mixed", [PRECISION_SINGLE] = "single"};
+    const char *method = scene->method == METHOD_LATTICE ? "lattice" : "particles";
+    printf("%s\n", scene->title && *scene->title ? scene->title : scene->name);
+    printf("    %s: %s in %s precision, hash %016lx\n", scene->path, method, precision[scene->precision], scene->hash);
+    printf("    gravity (%g, %g, %g) m/s2", scene->gravity[0], scene->gravity[1], scene->gravity[2]);
+    for (int a = 0; a < 3; a++)
+        if (scene->domain.periodic[a]) printf(", periodic in %c over %g m", "xyz"[a], scene -> domain.max[a] - scene->domain.min[a]);
+    printf("%s\n", scene->domain.remove_outside ? ", elements that leave the domain are removed" : "");
+}
+
+static void print_elements(const struct scene *scene, const struct elements_host *elements)
+{
+    printf("\nelements: %lld\n", (long long)elements->n);
+    for (int g = 0; g < scene->n_group; g++) {
+        const struct element_group *group = &scene->group[g];
+        double smallest = HUGE_VAL, largest = 0, mass = 0;
+        int64_t n = 0;
+        for (int64_t i = 0; i < elements->n; i++) {
+            double r = elements->radius[i];
+            if (elements->group[i] != g) continue;
+            n++;
+            smallest = fmin(smallest, r);
+            largest = fmax(largest, r);
+            mass += scene->material[group->material].density * (4.0 / 3.0) * M_PI * r * r * r;
+        }
+        printf("    %s: %lld of %s, ", group->name, (long long)n, scene->material[group->material].name);
+        if (smallest < largest) printf("diameter %.4g to %.4g m, ", 2 * smallest, 2 * largest);
+        else if (n > 0) printf("diameter %.4g m, ", 2 * smallest);
+        printf("%.4g kg in all\n", mass);
+    }
+}
+
+static void print_walls(const struct scene *scene, const struct walls *walls)
+{
+    static const char *const kind[] = {[SURFACE_PLANE] = "plane",
+        [SURFACE_RECTANGLE] = "rectangle",
+        [SURFACE_BOX] = "box",
+        [SURFACE_CYLINDER] = "cylinder",
+        [SURFACE_STL] = "triangles"};
+    printf("\nwalls: %d, of %d primitives\n", walls->n_wall, walls->n_primitive);
+    for (int w = 0; w < walls->n_wall; w++) {
+        const struct wall *wall = &scene->wall[w];
+        printf("    %s: %s, ", wall->name, scene->material[wall->material].name);
+        if (wall->kind == SURFACE_STL) printf("%d ", walls->first[w + 1] - walls->first[w]);
+        printf("%s%s", kind[wall->kind], walls->moves[w] ? ", moves" : "");
+        if (wall->appear_at > 0) printf(", from %g s", wall->appear_at);
+        if (isfinite(wall->remove_at)) printf(", until %g s", wall->remove_at);
+        printf("\n");
+    }
+    if (walls->n_dropped > 0) printf("    %d triangles without area were left out\n", walls->n_dropped);
+}
+
+/* The same limit, step and number of steps as sim_create has them. */
+static void print_time(const struct scene *scene, const struct walls *walls, const struct elements_host *elements)
+{
+    const struct scene_time *time = &scene->time;
+    double speed = limit_speed(scene, walls, elements), limit = limit_dense(scene, elements, speed);
+    double dt = time->step > 0 ? time->step : time->safety * limit;
+    if (!(dt > 0 && isfinite(dt))) {
+        printf("\ntime: %g s; `step: auto` finds no limit in this scene: give a value\n", time->end);
+        return;
+    }
+    if (!(time->end / dt <= SCENE_STEPS_MOST)) {
+        printf("\ntime: %g s; `step: auto` takes %.3g s, too many steps: give a value\n", time->end, dt);
+        return;
+    }
+    printf("\ntime: %g s in %.0f steps of %.6g s, ", time->end, ceil(time->end / dt * (1 - 1e-12)), dt);
+    if (time->step > 0) printf("as given\n");
+    else printf("%g of the limit\n", time->safety);
+    printf("    limit %.4g s, for the densest packing of these elements and relative speeds of up to %.3g m/s\n", limit, speed);
+    if (time->step > limit)
+        printf(
+            "    the step is over it: a run %s\n", time->allow_unstable ? "goes on, as asked for" : "stops where its contacts are as stiff as that");
+    struct scene_errors warnings = {0};
+    limit_warnings(scene, elements, speed, dt, &warnings);
+    for (int k = 0; k < warnings.n; k++) printf("    warning: %s\n", warnings.text[k]);
+    scene_errors_free(&warnings);
+}
+
+void check_output(const struct scene *scene)
+{
+    double every[] = {scene->output.every, scene->output.checkpoint_every}, n = 0;
+    printf("\noutput: frames at the start, at the end");
+    for (int k = 0; k < 2; k++) {
+        if (every[k] <= 0) continue;
+        every[k] = fmax(every[k], scene->time.step); /* no more than one in a step */
+        n += floor(scene->time.end / every[k] * (1 - 1e-9));
+        printf(" and every %g s", every[k]);
+    }
+    if (n > 0) printf(", %s%.0f in all", every[0] > 0 && every[1] > 0 ? "up to " : "", n + 2);
+    printf("\n");
+    for (int k = 0; k < scene->n_measure; k++) printf("    %s.csv every %g s\n", scene->measure[k].name, scene->measure[k].every);
+}
+
+void check_features(const char *(*name)(int), bool (*value)(const void *, int), const void *features)
+{
+    for (int in = 1; in >= 0; in--) {
+        int column = printf("%sfeatures %s:", in ? "\n" : "", in ? "in" : "out");
+        for (int k = 0; name(k); k++) {
+            if (value(features, k) != in) continue;
+            if (column > 100) column = printf("\n   ");
+            column += printf(" %s", name(k));
+        }
+        printf("\n");
+    }
+}
+
+static bool feature_value(const void *features, int k)
+{
+    return features_value(features, k);
+}
+
+static void print_all(const struct scene *scene, const struct walls *walls, const struct elements_host *elements)
+{
+    struct features features = features_of(scene, walls, elements);
+    check_head(scene);
+    print_elements(scene, elements);
+    print_walls(scene, walls);
+    check_contacts(scene, elements);
+    print_time(scene, walls, elements);
+    check_output(scene);
+    check_features(features_name, feature_value, &features);
+    double per_element = check_element_bytes(&features), per_pair = check_pair_bytes(&features);
+    printf("\nmemory on the devices: %.0f bytes per element and %.0f per listed pair; %.1f MiB with %.2g pairs per element, as in a dense packing\n",
+        per_element, per_pair, (per_element + dense_pairs * per_pair) * (double)elements->n / 1048576, dense_pairs);
+}
+
+int check_scene(const struct comm *comm, const struct scene *scene, bool resolved)
+{
+    if (scene->method == METHOD_LATTICE) return check_lattice(comm, scene, resolved);
+    struct scene_errors errors = {0};
+    struct walls *walls = NULL;
+    struct elements_host *elements = NULL;
+    if (comm->rank == 0) {
+        walls = walls_create(scene, &errors);
+        elements = generate_elements(scene, &errors);
+        if (walls && elements) generate_check_walls(scene, walls, elements, &errors);
+    }
+    scene_report_errors(comm, &errors);
+    if (comm->rank == 0 && resolved) fputs(scene->resolved, stdout);
+    else if (comm->rank == 0) print_all(scene, walls, elements);
+    walls_free(walls);
+    generate_free(elements);
+    return EXIT_DONE;
+}

@@ -1,0 +1,126 @@
+/* `democles check` of a scene of method lattice. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "check_parts.h"
+#include "comm/fail.h"
+#include "lattice/lattice_input.h"
+#include "lattice/lattice_frequency.h"
+#include "lattice/lattice_loads.h"
+#include "scene/scene_report.h"
+
+static int64_t count_links(const struct lattice_cells *cells, int body)
+{
+    int64_t n = 0;
+    for (int64_t i = 0; i < cells->n; i++)
+        for (int a = 0; a < 3 && (body < 0 || cells->body[i] == body); a++) n += cells->bits[i] >> (2 * a + 1) & 1;
+    return n;
+}
+
+static void print_material(const struct material *m)
+{
+    printf("    %s: density %g kg/m3, E %g Pa, nu %g", m->name, m->density, m->young, m->poisson);
+    if (m->mass_damping > 0) printf(", damping of mass %.4g 1/s", m->mass_damping);
+    if (m->link_damping > 0) printf(", of links %.4g s", m->link_damping);
+    if (m->has_strength && m->energy > 0) printf(", breaks by %.4g J/m2", m->energy);
+    else if (m->has_strength && isfinite(m->tension)) printf(", breaks at %.4g Pa", m->tension);
+    if (m->has_strength && isfinite(m->shear)) printf(", in shear at %.4g Pa", m->shear);
+    printf("\n");
+}
+
+static void print_cells(const struct scene *scene, const struct lattice_cells *cells)
+{
+    printf("\ncells: %lld, links: %lld\n", (long long)cells->n, (long long)count_links(cells, -1));
+    for (int b = 0; b < scene->n_body; b++) {
+        const struct body *body = &scene->body[b];
+        const struct material *m = &scene->material[body->material];
+        double mass = link_constants_mass(lattice_frequency_material(m), body->cell) * (double)cells->n_of_body[b];
+        printf("    %s: %lld cells of %g m, %s, %.4g kg, %lld links within and upwards from it\n", body->name, (long long)cells->n_of_body[b],
+            body->cell, m->name, mass, (long long)count_links(cells, b));
+    }
+    if (cells->n_grid > 1) printf("    on %d grids: bodies on different ones are not joined\n", cells->n_grid);
+    printf("\nmaterials\n");
+    for (int k = 0; k < scene->n_material; k++) print_material(&scene->material[k]);
+}
+
+static void print_boundaries(const struct scene *scene, const struct lattice_cells *cells)
+{
+    int64_t n_held = 0, n_loaded = 0;
+    for (int64_t i = 0; i < cells->n; i++) {
+        n_held += (cells->bits[i] & CELL_FIXED) != 0;
+        n_loaded += cells->row[i] > 0;
+    }
+    printf("\nboundaries: %d; %lld cells are held or led, %lld are loaded or led, in %d different ways\n", scene->n_boundary, (long long)n_held,
+        (long long)n_loaded, cells->loads->n_row - 1);
+}
+
+static bool may_break(const struct scene *scene)
+{
+    for (int k = 0; k < scene->n_material; k++)
+        if (scene->material[k].has_strength) return true;
+    return false;
+}
+
+static void print_time(const struct scene *scene, const struct lattice_cells *cells)
+{
+    static const char *const scheme[] = {"leapfrog", "rk4", "rkn4", "pefrl", "vefrl"};
+    const struct scene_time *time = &scene->time;
+    double largest = lattice_frequency_largest(scene, cells), zeta = lattice_frequency_damping(scene, cells, largest);
+    double factor = lattice_limit_factor((enum lattice_scheme)time->scheme, zeta);
+    double free = lattice_limit_factor((enum lattice_scheme)time->scheme, 0), limit = factor / largest;
+    double dt = time->step > 0 ? time->step : time->safety * limit;
+    printf("\ntime: %g s in %.0f steps of %.6g s, ", time->end, ceil(time->end / dt * (1 - 1e-12)), dt);
+    if (time->step > 0) printf("as given");
+    else printf("%g of the limit", time->safety);
+    printf(", by %s", scheme[time->scheme]);
+    if (scene->lattice.relax) printf(", or until %g of the largest force is left", scene->lattice.tolerance);
+    printf("\n    limit %.4g s, from the largest frequency, %.4g Hz\n", limit, largest / (2 * M_PI));
+    if (may_break(scene)) printf("    links that break do not raise it\n");
+    if (zeta > 0) printf("    damping of links is %.4g of critical there%s", zeta, factor < free ? "" : " and costs no time step\n");
+    if (zeta > 0 && factor < free) printf(", and makes the step %.3g times smaller than without\n", free / factor);
+    if (dt > limit) printf("    the step is over it: a run %s\n", time->allow_unstable ? "goes on, as asked for" : "is refused");
+}
+
+/* Bodies with one layer of cells along an axis have no Poisson effect in bending. */
+static void print_thin(const struct scene *scene, const struct lattice_cells *cells)
+{
+    for (int b = 0; b < scene->n_body; b++)
+        for (int a = 0; a < 3; a++) {
+            int32_t low = INT32_MAX, high = INT32_MIN;
+            for (int64_t i = 0; i < cells->n; i++) {
+                if (cells->body[i] != b) continue;
+                low = cells->at[i][a] < low ? cells->at[i][a] : low;
+                high = cells->at[i][a] > high ? cells->at[i][a] : high;
+            }
+            if (low == high && (scene->material[scene->body[b].material].poisson < 0 || scene->material[scene->body[b].material].poisson > 0))
+                printf("    warning: '%s' is one cell thick in %c: no effect of Poisson's ratio in bending\n", scene->body[b].name, "xyz"[a]);
+        }
+}
+
+static bool feature_value(const void *features, int k)
+{
+    return lattice_features_value(features, k);
+}
+
+int check_lattice(const struct comm *comm, const struct scene *scene, bool resolved)
+{
+    struct scene_errors errors = {0};
+    struct lattice_cells *cells = comm->rank == 0 ? lattice_cells_create(scene, &errors) : NULL;
+    scene_report_errors(comm, &errors);
+    if (comm->rank == 0 && resolved) fputs(scene->resolved, stdout);
+    else if (comm->rank == 0) {
+        struct lattice_input *input = lattice_input_create(scene, cells, 0);
+        struct lattice_features features = lattice_features_of(cells, &input->options);
+        lattice_input_free(input);
+        check_head(scene);
+        print_cells(scene, cells);
+        print_thin(scene, cells);
+        print_boundaries(scene, cells);
+        print_time(scene, cells);
+        check_output(scene);
+        check_features(lattice_features_name, feature_value, &features);
+    }
+    lattice_cells_free(cells);
+    return EXIT_DONE;
+}

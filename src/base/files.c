@@ -1,0 +1,92 @@
+#include "files.h"
+#include "comm/fail.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static bool failed(char error[FILES_ERROR_SIZE], const char *what, const char *path)
+{
+    snprintf(error, FILES_ERROR_SIZE, "cannot %s '%s': %s", what, path, strerror(errno));
+    return false;
+}
+
+char *files_read(const char *path, size_t *n, char error[FILES_ERROR_SIZE])
+{
+    FILE *file = fopen(path, "rb");
+    if (!file) {
+        failed(error, "open", path);
+        return NULL;
+    }
+    size_t room = 4096;
+    char *text = fail_alloc(room);
+    *n = 0;
+    for (;;) {
+        *n += fread(text + *n, 1, room - 1 - *n, file);
+        if (*n < room - 1) break;
+        room *= 2;
+        text = fail_realloc(text, room);
+    }
+    text[*n] = '\0';
+    if (ferror(file)) { /* a folder opens, but does not read */
+        failed(error, "read", path);
+        free(text);
+        text = NULL;
+    }
+    fclose(file);
+    return text;
+}
+
+/* A rename is safe against a power cut only once the folder itself is on disk. */
+static bool sync_folder_of(const char *path)
+{
+    char *folder = fail_strdup(path), *slash = strrchr(folder, '/');
+    if (slash == folder) slash[1] = '\0';
+    else if (slash) *slash = '\0';
+    int fd = open(slash ? folder : ".", O_RDONLY | O_DIRECTORY);
+    free(folder);
+    if (fd < 0) return false;
+    /* Some network file systems cannot sync a folder and say EINVAL. */
+    bool ok = fsync(fd) == 0 || errno == EINVAL;
+    close(fd);
+    return ok;
+}
+
+bool files_commit(const char *tmp, const char *path, char error[FILES_ERROR_SIZE])
+{
+    if (rename(tmp, path)) {
+        failed(error, "rename to", path);
+        unlink(tmp);
+        return false;
+    }
+    if (!sync_folder_of(path)) return failed(error, "sync the folder of", path);
+    return true;
+}
+
+static bool write_all(int fd, const char *data, size_t n)
+{
+    while (n > 0) {
+        ssize_t done = write(fd, data, n);
+        if (done < 0 && errno == EINTR) continue;
+        if (done < 0) return false;
+        data += done;
+        n -= (size_t)done;
+    }
+    return true;
+}
+
+bool files_replace(const char *path, const void *data, size_t n, char error[FILES_ERROR_SIZE])
+{
+    char *tmp = fail_format("%s.tmp", path);
+    int fd = open(tmp, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    bool ok = fd >= 0 || failed(error, "create", tmp);
+    if (ok && (!write_all(fd, data, n) || fsync(fd))) ok = failed(error, "write", tmp);
+    if (fd >= 0 && close(fd) && ok) ok = failed(error, "write", tmp);
+    if (ok) ok = files_commit(tmp, path, error);
+    else if (fd >= 0) unlink(tmp);
+    free(tmp);
+    return ok;
+}

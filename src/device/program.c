@@ -1,0 +1,85 @@
+#include "program.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "comm/fail.h"
+#include "kernel_cache.h"
+
+/* Writes what the compiler saw beside the results, or into the temporary folder; returns the path, or why there is none. */
+static char *dump(const struct program *program, const char *source)
+{
+    const char *folder = program->dev->dump_dir ? program->dev->dump_dir : getenv("TMPDIR");
+    char *path = fail_format("%s/%s_%d.cl", folder && folder[0] ? folder : "/tmp", program->name, (int)getpid());
+    FILE *file = fopen(path, "w");
+    bool good = file && fprintf(file, "/* %s */\n%s", program->options, source) > 0;
+    if (file && fclose(file) != 0) good = false;
+    if (good) return path;
+    char *text = fail_format("nowhere: %s cannot be written", path);
+    free(path);
+    return text;
+}
+
+/* The code of a failed build differs between drivers for the same mistake: all of them end here. */
+static _Noreturn void build_failed(const struct program *program, const char *source, cl_int code)
+{
+    size_t bytes = 0;
+    clGetProgramBuildInfo(program->id, program->dev->id, CL_PROGRAM_BUILD_LOG, 0, NULL, &bytes);
+    char *log = fail_alloc(bytes + 1);
+    clGetProgramBuildInfo(program->id, program->dev->id, CL_PROGRAM_BUILD_LOG, bytes, log, NULL);
+    fprintf(stderr, "%s\n", log); /* may be longer than a message */
+    fail_stop(EXIT_DEVICE, "program %s does not build on %s (%s): %s; log above; options: %s; source: %s", program->name, program->dev->name,
+        program->dev->platform_version, device_error_name(code), program->options, dump(program, source));
+}
+
+static void build(struct program *program, const char *source)
+{
+    cl_int code;
+    program->id = clCreateProgramWithSource(program->dev->context, 1, &source, NULL, &code);
+    check_cl_as(code, "clCreateProgramWithSource");
+    int lock = kernel_cache_lock(program->dev);
+    code = clBuildProgram(program->id, 1, &program->dev->id, program->options, NULL, NULL);
+    kernel_cache_unlock(lock);
+    if (code != CL_SUCCESS) build_failed(program, source, code);
+}
+
+struct program *program_build(struct device *dev, const struct comm *comm, const char *name, const char *options, const char *const *sources)
+{
+    struct program *program = fail_alloc(sizeof *program);
+    char *source = program_source(sources);
+    program->dev = dev;
+    program->name = fail_strdup(name);
+    program->options = fail_format("-cl-std=CL1.2 -w -cl-kernel-arg-info%s -DWITH_ONE_LANE=%d %s",
+        dev->fp32_correct_divide ? " -cl-fp32-correctly-rounded-divide-sqrt" : "", dev->one_lane, options);
+    program->real_is_float = strstr(options, "-DREAL_IS_FLOAT=1");
+    program->position_is_float = strstr(options, "-DPOSITION_IS_FLOAT=1");
+
+    if (!comm || comm->node_rank == 0) build(program, source);
+    if (comm) comm_node_barrier(comm);
+    if (comm && comm->node_rank != 0) build(program, source);
+    free(source);
+    return program;
+}
+
+void program_free(struct program *program)
+{
+    if (!program) return;
+    check_cl(clReleaseProgram(program->id));
+    free(program->name);
+    free(program->options);
+    free(program);
+}
+
+cl_kernel program_kernel(const struct program *program, const char *kernel)
+{
+    cl_int code;
+    cl_kernel id = clCreateKernel(program->id, kernel, &code);
+    if (code == CL_INVALID_KERNEL_NAME) {
+        char names[2048] = "";
+        clGetProgramInfo(program->id, CL_PROGRAM_KERNEL_NAMES, sizeof names, names, NULL);
+        fail_stop(EXIT_DEVICE, "program %s has no kernel %s; it has: %s", program->name, kernel, names);
+    }
+    check_cl_as(code, "clCreateKernel");
+    return id;
+}

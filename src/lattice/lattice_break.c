@@ -1,0 +1,180 @@
+#include "lattice_break.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "kernels/lattice/lattice_words.h"
+#include "comm/fail.h"
+
+struct lattice_break {
+    struct lattice *l;
+    struct program *program;
+    struct launch *judge, *part;
+    struct buffer limit, fate;
+    struct program *program_release; /* NULL: released energy is not asked for */
+    struct launch *release;
+    struct buffer fresh, released;
+};
+
+/* Shares of the links' energy that are released at the step's start and at its end (kernels/lattice/link_release.cl). */
+static double share_before(const struct lattice *l)
+{
+    return l->scheme->ends_with_kick ? l->scheme->op[0].end : 0;
+}
+
+static void create_release(struct lattice_break *b)
+{
+    static const char *const source[] = {"link_release.cl", NULL};
+    struct lattice *l = b->l;
+    size_t n = (size_t)l->layout->plane;
+    buffer_init(&b->fresh, "lattice fresh breaks");
+    buffer_init(&b->released, "lattice released");
+    if (!l->features.energy) return;
+    char *text = lattice_features_options(&l->features, l->layout), *options = fail_format("%s -DWITH_SUMS=1", text);
+    b->program_release = program_build(l->dev, l->comm, "release", options, source);
+    free(text);
+    free(options);
+    buffer_reserve(l->dev, &b->fresh, n * sizeof(int32_t));
+    buffer_zero(l->dev, &b->fresh);
+    buffer_reserve(l->dev, &b->released, n * sizeof(double));
+    buffer_zero(l->dev, &b->released);
+    b->release = lattice_launch(l, b->program_release, "link_release", &l->force_list);
+    launch_bind_buffer(b->release, "fate", &b->fate);
+    launch_set_real(b->release, "before", share_before(l));
+    launch_set_int(b->release, "n", l->layout->n_force);
+    lattice_break_bind(b, b->release);
+}
+
+void lattice_break_bind(const struct lattice_break *b, struct launch *launch)
+{
+    launch_bind_buffer(launch, "fresh", &b->fresh);
+    launch_bind_buffer(launch, "released", &b->released);
+    launch_set_real(launch, "after", 1 - share_before(b->l));
+}
+
+struct lattice_break *lattice_break_create(struct lattice *l, const struct lattice_cells *cells)
+{
+    static const char *const source[] = {"link_break.cl", NULL};
+    struct lattice_break *b = fail_alloc(sizeof *b);
+    int64_t n = (int64_t)l->n_kind * l->n_kind * BREAK_WIDTH;
+    double *limit = lattice_features_limits(cells, &l->options);
+    char *text = lattice_features_options(&l->features, l->layout);
+    b->l = l;
+    b->program = program_build(l->dev, l->comm, "breakage", text, source);
+    free(text);
+    buffer_init(&b->limit, "lattice strengths");
+    buffer_reserve(l->dev, &b->limit, (size_t)n * lattice_v_bytes(l));
+    lattice_put(l, &b->limit, l->features.real_is_float, limit, n);
+    free(limit);
+    buffer_init(&b->fate, "lattice fates");
+    buffer_reserve(l->dev, &b->fate, (size_t)l->layout->plane * sizeof(int32_t));
+    buffer_zero(l->dev, &b->fate);
+    b->judge = lattice_launch(l, b->program, "link_break", NULL);
+    launch_bind_buffer(b->judge, "limit", &b->limit);
+    launch_bind_buffer(b->judge, "fate", &b->fate);
+    launch_set_int(b->judge, "n", l->layout->n_run - 2);
+    b->part = lattice_launch(l, b->program, "link_part", &l->force_list);
+    launch_bind_buffer(b->part, "fate", &b->fate);
+    launch_set_int(b->part, "n", l->layout->n_force);
+    create_release(b);
+    return b;
+}
+
+void lattice_break_free(struct lattice_break *b)
+{
+    if (!b) return;
+    device_finish(b->l->dev);
+    launch_free(b->judge);
+    launch_free(b->part);
+    launch_free(b->release);
+    program_free(b->program);
+    program_free(b->program_release);
+    buffer_free(b->l->dev, &b->fresh);
+    buffer_free(b->l->dev, &b->released);
+    buffer_free(b->l->dev, &b->limit);
+    buffer_free(b->l->dev, &b->fate);
+    free(b);
+}
+
+void lattice_break_judge(struct lattice_break *b, int64_t x_in, int64_t v_in)
+{
+    const struct lattice_layout *c = b->l->layout;
+    launch_set_long(b->judge, "x_in", x_in);
+    launch_set_long(b->judge, "v_in", v_in);
+    launch_run(b->judge, b->l->dev->compute, (int64_t)(c->n_run - 2) * c->run, 0, NULL, NULL);
+    if (!b->release) return;
+    launch_set_long(b->release, "x_in", x_in);
+    launch_set_long(b->release, "v_in", v_in);
+    launch_run(b->release, b->l->dev->compute, (int64_t)c->n_force * c->run, 0, NULL, NULL);
+}
+
+void lattice_break_part(struct lattice_break *b)
+{
+    const struct lattice_layout *c = b->l->layout;
+    launch_run(b->part, b->l->dev->compute, (int64_t)c->n_force * c->run, 0, NULL, NULL);
+}
+
+const char *lattice_break_name(int mode)
+{
+    static const char *const name[LATTICE_BREAK_MODES] = {"tension", "shear", "bending", "twist"};
+    return name[mode];
+}
+
+static void read_ints(const struct lattice *l, const struct buffer *buffer, int32_t mask, int32_t *value)
+{
+    size_t bytes = (size_t)l->layout->plane * sizeof(int32_t);
+    int32_t *raw = fail_alloc(bytes);
+    buffer_read(l->dev, buffer, 0, bytes, raw);
+    for (int64_t k = 0; k < l->layout->n_owned; k++) value[k] = raw[l->layout->index[k]] & mask;
+    free(raw);
+}
+
+void lattice_break_read(const struct lattice_break *b, int32_t *links, int32_t *fate)
+{
+    if (links) read_ints(b->l, &b->l->word, CELL_LINKS, links);
+    if (fate) read_ints(b->l, &b->fate, -1, fate);
+}
+
+/* Bits of the mask, the others stay. */
+static void write_ints(struct lattice *l, struct buffer *buffer, int32_t mask, const int32_t *value)
+{
+    size_t bytes = (size_t)l->layout->plane * sizeof(int32_t);
+    int32_t *raw = fail_alloc(bytes);
+    buffer_read(l->dev, buffer, 0, bytes, raw);
+    for (int64_t k = 0; k < l->layout->n_owned; k++) raw[l->layout->index[k]] = (raw[l->layout->index[k]] & ~mask) | (value[k] & mask);
+    buffer_write(l->dev, buffer, 0, bytes, raw);
+    free(raw);
+}
+
+void lattice_break_write(struct lattice_break *b, const int32_t *links, const int32_t *fate)
+{
+    write_ints(b->l, &b->l->word, CELL_LINKS, links);
+    write_ints(b->l, &b->fate, -1, fate);
+}
+
+void lattice_break_read_release(const struct lattice_break *b, int32_t *fresh, double *released)
+{
+    double *plane = lattice_read_plane(b->l, &b->released, false, 0);
+    memcpy(released, plane, (size_t)b->l->layout->n_owned * sizeof *released);
+    read_ints(b->l, &b->fresh, -1, fresh);
+    free(plane);
+}
+
+void lattice_break_write_release(struct lattice_break *b, const int32_t *fresh, const double *released)
+{
+    write_ints(b->l, &b->fresh, -1, fresh);
+    lattice_write_plane(b->l, &b->released, false, 0, released, 1);
+}
+
+void lattice_break_count(const struct lattice_break *b, int64_t count[LATTICE_BREAK_MODES])
+{
+    int64_t n = b->l->layout->n_owned;
+    int32_t *fate = fail_alloc((size_t)n * sizeof *fate);
+    for (int mode = 0; mode < LATTICE_BREAK_MODES; mode++) count[mode] = 0;
+    lattice_break_read(b, NULL, fate);
+    for (int64_t k = 0; k < n; k++)
+        for (int axis = 0; axis < 3; axis++)
+            if (FATE_MODE(fate[k], axis)) count[FATE_MODE(fate[k], axis) - 1]++;
+    free(fate);
+    comm_sum_i64(b->l->comm, count, LATTICE_BREAK_MODES);
+}

@@ -1,0 +1,50 @@
+/* What the files that make cells share. Private to src/lattice_{cells,cracks,cut,loads}.c. */
+#ifndef DEMOCLES_LATTICE_PARTS_H
+#define DEMOCLES_LATTICE_PARTS_H
+
+#include "lattice_cells.h"
+#include "shape/region.h"
+
+/* A body on its way to cells. */
+struct lattice_cut {
+    const struct body *body;
+    int index; /* of the body */
+    struct region_shape shape, *minus;
+    int size[3]; /* cells of the bounding box */
+    int grid;
+    int64_t shift[3]; /* of its first cell on the grid */
+    int64_t n;        /* cells it has cut, before others took some */
+};
+
+/* One cell: place packed as z, y, x of 21 bits each, so that keys sort as cells do. */
+struct lattice_cell {
+    uint64_t key;
+    int16_t body;
+};
+enum { LATTICE_BITS = 21, LATTICE_MOST = (1 << LATTICE_BITS) - 1 };
+
+struct lattice_list {
+    struct lattice_cell *cell;
+    size_t n, room;
+};
+
+/* Opens shape and holes and counts cells along each axis; false with messages where that fails. */
+bool lattice_cut_open(struct lattice_cut *cut, const struct scene *scene, int body, struct scene_errors *errors);
+void lattice_cut_close(struct lattice_cut *cut);
+/* Deals the bodies to grids; sets grid and shift of each, n and grid of cells. False with messages where a grid is too large. */
+bool lattice_cut_place(struct lattice_cut *cut, const struct scene *scene, struct lattice_cells *cells, struct scene_errors *errors);
+/* Appends the body's cells, by ascending key. */
+void lattice_cut_append(struct lattice_cut *cut, struct lattice_list *list);
+
+/* scene.yaml:LINE:COLUMN: text */
+void lattice_fault(const struct scene *scene, struct scene_errors *errors, int line, int column, const char *format, ...)
+    __attribute__((format(printf, 5, 6)));
+
+/* Links are known: takes out those in the bodies' cracks. */
+void lattice_cracks_cut(const struct scene *scene, struct lattice_cells *cells, struct scene_errors *errors);
+
+/* Fixed DOF and rows of loads into `cells`, whose links are known. */
+void lattice_loads_create(const struct scene *scene, struct lattice_cells *cells, struct scene_errors *errors);
+void lattice_loads_free(struct lattice_loads *loads);
+
+#endif

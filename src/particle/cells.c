@@ -1,0 +1,177 @@
+#include "cells.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "comm/fail.h"
+
+enum { BOUNDS_WIDTH = 9, BOUNDS_GROUPS = 64, GROUP = 64, GRID_REALS = 7, GRID_INTS = 4 };
+
+struct cells *cells_create(
+    struct device *dev, const struct features *features, const struct program *lists, const double period[3], const double domain[6])
+{
+    struct cells *c = fail_alloc(sizeof *c);
+    struct buffer *all[] = {&c->grid_real, &c->grid_int, &c->key, &c->begin, &c->cursor, &c->member, &c->partial};
+    static const char *const name[] = {"grid", "grid, integers", "cell of element", "cell begin", "cell cursor", "cell member", "bounds"};
+    for (int i = 0; i < 7; i++) {
+        buffer_init(all[i], name[i]);
+        buffer_reserve(dev, all[i], 0);
+    }
+    c->features = features;
+    memcpy(c->period, period, sizeof c->period);
+    memcpy(c->domain, domain, sizeof c->domain);
+    buffer_reserve(dev, &c->grid_real, CELLS_LEVELS * GRID_REALS * sizeof(double));
+    buffer_reserve(dev, &c->grid_int, CELLS_LEVELS * GRID_INTS * sizeof(cl_int));
+    buffer_reserve(dev, &c->partial, BOUNDS_GROUPS * BOUNDS_WIDTH * sizeof(double));
+    c->bounds = launch_create(lists, "select_bounds");
+    c->count = launch_create(lists, "cell_count");
+    c->fill = launch_create(lists, "cell_fill");
+    c->order = launch_create(lists, "order_count");
+    c->copy = launch_create(lists, "record_copy");
+    launch_set_int(c->bounds, "n_group", BOUNDS_GROUPS);
+    launch_bind_buffer(c->bounds, "partial", &c->partial);
+    struct launch *keyed[] = {c->count, c->order};
+    for (int i = 0; i < 2; i++) {
+        launch_bind_buffer(keyed[i], "grid_real", &c->grid_real);
+        launch_bind_buffer(keyed[i], "grid_int", &c->grid_int);
+        launch_bind_buffer(keyed[i], "key", &c->key);
+        launch_bind_buffer(keyed[i], "count", &c->begin);
+    }
+    launch_bind_buffer(c->fill, "key", &c->key);
+    launch_bind_buffer(c->fill, "cursor", &c->cursor);
+    launch_bind_buffer(c->fill, "member", &c->member);
+    launch_bind_buffer(c->copy, "from", &c->begin);
+    launch_bind_buffer(c->copy, "to", &c->cursor);
+    return c;
+}
+
+void cells_free(struct device *dev, struct cells *c)
+{
+    if (!c) return;
+    struct buffer *all[] = {&c->grid_real, &c->grid_int, &c->key, &c->begin, &c->cursor, &c->member, &c->partial};
+    for (int i = 0; i < 7; i++) buffer_free(dev, all[i]);
+    struct launch *launch[] = {c->bounds, c->count, c->fill, c->order, c->copy};
+    for (int i = 0; i < 5; i++) launch_free(launch[i]);
+    free(c);
+}
+
+struct cells_bounds cells_bounds(struct device *dev, struct cells *c, const struct particles *p, int64_t n)
+{
+    struct cells_bounds b = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, INFINITY, 0, 0, false};
+    if (n == 0) return b;
+    launch_set_int(c->bounds, "n", (int)n);
+    launch_bind_buffer(c->bounds, "position", &p->field[FIELD_STATE].now);
+    launch_bind_buffer(c->bounds, "motion", &p->field[FIELD_STATE].now);
+    launch_bind_buffer(c->bounds, "reach", &p->reach);
+    launch_run(c->bounds, dev->compute, BOUNDS_GROUPS * GROUP, 0, NULL, NULL);
+    double *part = particles_read(dev, &c->partial, c->features->position_is_float, 0, BOUNDS_GROUPS * BOUNDS_WIDTH);
+    for (int g = 0; g < BOUNDS_GROUPS; g++) {
+        const double *x = part + g * BOUNDS_WIDTH;
+        if (x[7] < -1e29) continue; /* a group without elements */
+        for (int a = 0; a < 3; a++) {
+            b.low[a] = fmin(b.low[a], -x[a]);
+            b.high[a] = fmax(b.high[a], x[3 + a]);
+        }
+        b.reach_min = fmin(b.reach_min, -x[6]);
+        b.reach_max = fmax(b.reach_max, x[7]);
+        b.has_nan |= isnan(x[8]) || !(fabs(x[0]) < 1e29 && fabs(x[1]) < 1e29 && fabs(x[2]) < 1e29);
+        b.speed = fmax(b.speed, sqrt(x[8]));
+    }
+    free(part);
+    return b;
+}
+
+/* One level of cells of edge >= h over the bounds, at most `most` of them. */
+static void set_level(
+    const struct cells *c, const struct cells_bounds *b, double h, double reach, int64_t most, double *real, cl_int *integer, int64_t *n_cell)
+{
+    double low[3], size[3];
+    for (int a = 0; a < 3; a++) {
+        bool periodic = c->period[a] > 0;
+        low[a] = periodic ? c->domain[a] : b->low[a];
+        size[a] = periodic ? c->period[a] : fmax(b->high[a] - b->low[a], 0);
+    }
+    for (;; h *= 1.26) {
+        double cells = 1;
+        for (int a = 0; a < 3; a++) cells *= fmax(floor(size[a] / h), 1);
+        if (cells <= (double)most) break;
+    }
+    int64_t cells = 1;
+    for (int a = 0; a < 3; a++) {
+        int n = (int)fmax(floor(size[a] / h), 1);
+        real[a] = low[a];
+        real[3 + a] = size[a] > 0 ? n / size[a] : 0;
+        integer[a] = n;
+        cells *= n;
+    }
+    real[6] = reach;
+    integer[3] = (cl_int)*n_cell;
+    *n_cell += cells;
+}
+
+static void write_grid(struct device *dev, struct cells *c, const double *real, const cl_int *integer)
+{
+    particles_write(dev, &c->grid_real, c->features->position_is_float, 0, (size_t)c->n_level * GRID_REALS, real);
+    buffer_write(dev, &c->grid_int, 0, (size_t)c->n_level * GRID_INTS * sizeof(cl_int), integer);
+    buffer_reserve(dev, &c->begin, ((size_t)c->n_cell + 2) * sizeof(cl_int));
+    buffer_reserve(dev, &c->cursor, ((size_t)c->n_cell + 2) * sizeof(cl_int));
+    buffer_zero(dev, &c->begin);
+}
+
+static void fill(struct device *dev, struct cells *c, struct scan *scan, int64_t n, int64_t n_cell)
+{
+    scan_run(dev, scan, &c->begin, n_cell);
+    launch_set_int(c->copy, "n", (int)n_cell);
+    launch_run(c->copy, dev->compute, n_cell, 0, NULL, NULL);
+    launch_set_int(c->fill, "n", (int)n);
+    launch_run(c->fill, dev->compute, n, 0, NULL, NULL);
+}
+
+static void reserve(struct device *dev, struct cells *c, int64_t n)
+{
+    buffer_reserve(dev, &c->key, (size_t)n * sizeof(cl_int));
+    buffer_reserve(dev, &c->member, (size_t)n * sizeof(cl_int));
+}
+
+/* Levels halve the reach from the largest down, as long as there may be elements; an element searches its own and all other levels. */
+void cells_sort(struct device *dev, struct cells *c, struct scan *scan, const struct particles *p, int64_t n, const struct cells_bounds *b)
+{
+    double real[CELLS_LEVELS * GRID_REALS];
+    cl_int integer[CELLS_LEVELS * GRID_INTS];
+    c->n_level = 0;
+    c->n_cell = 0;
+    if (n == 0) return;
+    for (double reach = b->reach_max * (1 + 1e-6); c->n_level < CELLS_LEVELS; reach *= 0.5, c->n_level++) {
+        if (c->n_level > 0 && reach < b->reach_min) break;
+        set_level(c, b, 2 * reach, reach, 2 * n + 1000, real + c->n_level * GRID_REALS, integer + c->n_level * GRID_INTS, &c->n_cell);
+    }
+    write_grid(dev, c, real, integer);
+    reserve(dev, c, n);
+    launch_set_int(c->count, "n", (int)n);
+    launch_set_int(c->count, "n_level", c->n_level);
+    launch_bind_buffer(c->count, "position", &p->field[FIELD_STATE].now);
+    launch_bind_buffer(c->count, "reach", &p->reach);
+    launch_run(c->count, dev->compute, n, 0, NULL, NULL);
+    fill(dev, c, scan, n, c->n_cell);
+}
+
+void cells_order(struct device *dev, struct cells *c, struct scan *scan, const struct particles *p, int64_t n, const struct cells_bounds *b,
+    const struct buffer *keep)
+{
+    double real[GRID_REALS];
+    cl_int integer[GRID_INTS];
+    if (n == 0) return;
+    c->n_level = 1;
+    c->n_cell = 0;
+    set_level(c, b, 2 * b->reach_min, b->reach_max, n + 1000, real, integer, &c->n_cell);
+    c->n_cell++; /* for those that leave */
+    write_grid(dev, c, real, integer);
+    reserve(dev, c, n);
+    launch_set_int(c->order, "n", (int)n);
+    launch_set_int(c->order, "n_cell", (int)c->n_cell - 1);
+    launch_bind_buffer(c->order, "position", &p->field[FIELD_STATE].now);
+    launch_bind_buffer(c->order, "keep", keep);
+    launch_run(c->order, dev->compute, n, 0, NULL, NULL);
+    fill(dev, c, scan, n, c->n_cell);
+}

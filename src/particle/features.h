@@ -1,0 +1,43 @@
+/* What a scene needs of the kernels, and nothing more: one list of features, each 0 or 1, from which the build options follow.
+ *
+ * Knows the scene and its walls; no device. The same list goes into run.json. */
+#ifndef DEMOCLES_FEATURES_H
+#define DEMOCLES_FEATURES_H
+
+#include "generate.h"
+#include "scene/scene.h"
+#include "shape/walls.h"
+
+/* Parts of the contact laws, once for pairs of elements and once for elements at walls. */
+struct law_features {
+    bool any; /* there is such a contact at all */
+    bool linear, hertz, no_attraction, tangential, tangential_damping, rolling_cdt, rolling_epsd, binding;
+};
+
+struct features {
+    bool real_is_float, position_is_float;
+    bool spin;       /* angular velocities exist */
+    bool sizes;      /* radii or masses differ between elements */
+    bool materials;  /* more than one element material */
+    bool wall_table; /* elements at walls: more than one pair of materials */
+    bool energy;     /* losses of contacts are accounted for */
+    bool orientation;
+    bool periodic[3];
+    bool walls, plane, rectangle, cylinder, triangle;
+    bool moving, timed; /* walls move; appear or go */
+    bool remove_outside;
+    struct law_features pair, wall;
+    double bond_range; /* [m] how far beyond touching a bond may reach: largest F_b/k_n */
+};
+
+struct features features_of(const struct scene *scene, const struct walls *walls, const struct elements_host *elements);
+
+/* Build options of the program of pairs (FEATURES_PAIR), of walls, or of what moves elements and builds lists; owned by the caller. */
+enum features_program { FEATURES_PAIR, FEATURES_WALL, FEATURES_BODY };
+char *features_options(const struct features *features, enum features_program program);
+
+/* Names and values, for run.json and `check`: i = 0, 1, ... until the name is NULL. */
+const char *features_name(int i);
+bool features_value(const struct features *features, int i);
+
+#endif

@@ -1,0 +1,140 @@
+/* Fills a region with spheres on a jittered cubic lattice.
+ *
+ * Spacing s = (1 + jitter) d_max, displacement at most jitter d_max/2 per axis: a sphere never leaves its cube of edge s, so spheres never
+ * overlap, whatever the random numbers are. Costs one test per site; with gravity along an axis, only up to the layer where `count` is reached. */
+#include "comm/fail.h"
+#include "generate_parts.h"
+#include "shape/region.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Rounding that a sphere may stick out of its region by, in radii. */
+static const double slack = 1e-9;
+
+/* Random number in [0, 1) as a function of its key: splitmix64's finaliser over seed, site and stream (Steele, Lea, Flood 2014). */
+static uint64_t mix(uint64_t z)
+{
+    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+    return z ^ z >> 31;
+}
+
+static double random_at(uint64_t seed, uint64_t site, uint64_t stream)
+{
+    const uint64_t step = 0x9e3779b97f4a7c15u;
+    uint64_t h = mix(mix(mix(seed + step) + site * step + step) ^ (stream + 1) * step);
+    return (double)(h >> 11) * 0x1p-53;
+}
+
+struct fill {
+    const struct element_group *group;
+    struct region_shape shape;
+    double spacing, origin[3]; /* first site [m] */
+    int64_t sites[3];
+    double up[3];     /* unit vector against gravity */
+    int layers_along; /* axis nearest to it */
+    bool is_straight; /* gravity is along that axis */
+};
+
+static void find_up(struct fill *fill, const double gravity[3])
+{
+    double g = sqrt(gravity[0] * gravity[0] + gravity[1] * gravity[1] + gravity[2] * gravity[2]);
+    fill->up[2] = 1;
+    for (int a = 0; a < 3 && g > 0; a++) fill->up[a] = -gravity[a] / g;
+    fill->layers_along = 2;
+    for (int a = 1; a >= 0; a--)
+        if (fabs(fill->up[a]) > fabs(fill->up[fill->layers_along])) fill->layers_along = a;
+    fill->is_straight = fabs(fill->up[fill->layers_along]) >= 1;
+}
+
+/* The lattice stands on the lowest end of the bounds where gravity is straight, and is centred otherwise. */
+static void place_lattice(struct fill *fill)
+{
+    fill->spacing = (1 + fill->group->jitter) * fill->group->diameter[1];
+    for (int a = 0; a < 3; a++) {
+        double length = fill->shape.high[a] - fill->shape.low[a];
+        fill->sites[a] = (int64_t)fmax(0, floor(length / fill->spacing + slack));
+        double rest = length - (double)fill->sites[a] * fill->spacing, share = 0.5;
+        if (a == fill->layers_along && fill->is_straight) share = fill->up[a] > 0 ? 0 : 1;
+        fill->origin[a] = fill->shape.low[a] + share * rest + 0.5 * fill->spacing;
+    }
+}
+
+struct site {
+    double height; /* of the lattice point, against gravity [m] */
+    uint64_t number;
+    double x[3], radius;
+};
+
+/* The sphere at lattice point ijk: displaced, of its own size; false if it is not all within the region. */
+static bool make_site(const struct fill *fill, const int64_t ijk[3], struct site *site)
+{
+    const struct element_group *group = fill->group;
+    uint64_t number = (uint64_t)((ijk[2] * fill->sites[1] + ijk[1]) * fill->sites[0] + ijk[0]), seed = group->seed;
+    site->number = number;
+    site->radius = 0.5 * (group->diameter[0] + (group->diameter[1] - group->diameter[0]) * random_at(seed, number, 3));
+    site->height = 0;
+    for (int a = 0; a < 3; a++) {
+        double point = fill->origin[a] + (double)ijk[a] * fill->spacing;
+        site->x[a] = point + (2 * random_at(seed, number, (uint64_t)a) - 1) * 0.5 * group->jitter * group->diameter[1];
+        site->height += point * fill->up[a];
+    }
+    return region_holds(&fill->shape, site->x, site->radius * (1 - slack));
+}
+
+struct sites {
+    struct site *site;
+    size_t n, room;
+};
+
+/* All sites that fit, or with straight gravity at least `enough` of the lowest ones. */
+static void collect(const struct fill *fill, size_t enough, struct sites *sites)
+{
+    int up = fill->layers_along, b = up == 0 ? 1 : 0, c = up == 2 ? 1 : 2;
+    for (int64_t layer = 0; layer < fill->sites[up]; layer++) {
+        int64_t ijk[3];
+        ijk[up] = fill->up[up] > 0 ? layer : fill->sites[up] - 1 - layer;
+        for (ijk[c] = 0; ijk[c] < fill->sites[c]; ijk[c]++)
+            for (ijk[b] = 0; ijk[b] < fill->sites[b]; ijk[b]++) {
+                if (sites->n == sites->room) {
+                    sites->room = sites->room ? 2 * sites->room : 1024;
+                    sites->site = fail_realloc(sites->site, sites->room * sizeof *sites->site);
+                }
+                sites->n += make_site(fill, ijk, sites->site + sites->n);
+            }
+        if (fill->is_straight && enough && sites->n >= enough) return;
+    }
+}
+
+static int compare_sites(const void *a, const void *b)
+{
+    const struct site *p = a, *q = b;
+    if (p->height < q->height || p->height > q->height) return p->height < q->height ? -1 : 1;
+    return (p->number > q->number) - (p->number < q->number);
+}
+
+void generate_fill(struct generate_list *list, const struct scene *scene, int group, struct scene_errors *errors)
+{
+    const struct element_group *of = scene->group + group;
+    struct fill fill = {.group = of};
+    struct sites sites = {0};
+    size_t count = (size_t)of->count;
+    char *text = region_open(&fill.shape, &of->region);
+    if (!text) {
+        find_up(&fill, scene->gravity);
+        place_lattice(&fill);
+        collect(&fill, count, &sites);
+        if (sites.n == 0) text = fail_format("no element of %g m fits into the region", of->diameter[1]);
+        else if (sites.n < count) text = fail_format("%zu elements were asked for, %zu fit into the region", count, sites.n);
+    }
+    if (text) scene_errors_add(errors, "%s:%d: elements '%s': %s", scene->path, of->line, of->name, text);
+    else {
+        qsort(sites.site, sites.n, sizeof *sites.site, compare_sites);
+        for (size_t k = 0; k < (count ? count : sites.n); k++) generate_add(list, scene, group, sites.site[k].x, sites.site[k].radius);
+    }
+    free(text);
+    free(sites.site);
+    region_close(&fill.shape);
+}

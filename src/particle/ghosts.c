@@ -1,0 +1,175 @@
+#include "ghosts.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "comm/fail.h"
+
+struct ghosts *ghosts_create(
+    struct device *dev, const struct comm *comm, const struct features *features, const struct program *lists, const double period[3])
+{
+    struct ghosts *g = fail_alloc(sizeof *g);
+    g->comm = comm;
+    g->features = features;
+    memcpy(g->period, period, sizeof g->period);
+    static const char *const name[] = {"ghost pack", "ghosts arrived", "ghost send", "ghost receive"};
+    exchange_init(&g->exchange, name);
+    buffer_init(&g->index, "ghost index");
+    buffer_init(&g->pick, "ghost pick");
+    buffer_reserve(dev, &g->index, 64);
+    buffer_reserve(dev, &g->pick, 64);
+    g->select = launch_create(lists, "select_ghosts");
+    g->compact = launch_create(lists, "record_select");
+    g->gather = launch_create(lists, "record_gather");
+    launch_set_real_if(g->select, "period_x", period[0]);
+    launch_set_real_if(g->select, "period_y", period[1]);
+    launch_set_real_if(g->select, "period_z", period[2]);
+    return g;
+}
+
+void ghosts_free(struct device *dev, struct ghosts *g)
+{
+    if (!g) return;
+    exchange_free(dev, &g->exchange);
+    buffer_free(dev, &g->index);
+    buffer_free(dev, &g->pick);
+    launch_free(g->select);
+    launch_free(g->compact);
+    launch_free(g->gather);
+    free(g);
+}
+
+/* What a rank tells the others about the elements that it owns. */
+struct box {
+    double low[3], high[3], reach;
+    int64_t n;
+};
+
+static double gap(double low_a, double high_a, double low_b, double high_b, double period)
+{
+    double d = fmax(fmax(low_b - high_a, low_a - high_b), 0);
+    if (period > 0) d = fmin(d, fmin(fmax(low_b + period - high_a, 0), fmax(low_a + period - high_b, 0)));
+    return d;
+}
+
+static bool may_meet(const struct ghosts *g, const struct box *a, const struct box *b)
+{
+    double sum = 0, reach = (a->reach + b->reach) * 1.001;
+    if (a->n == 0 || b->n == 0) return false;
+    for (int k = 0; k < 3; k++) {
+        double d = gap(a->low[k], a->high[k], b->low[k], b->high[k], g->period[k]);
+        sum += d * d;
+    }
+    return sum < reach * reach;
+}
+
+/* The owned elements that `rank` with `box` needs, into `piece`; returns how many. */
+static int64_t select_for(
+    struct device *dev, struct ghosts *g, struct scan *scan, const struct particles *p, int rank, const struct box *box, struct buffer *piece)
+{
+    static const char *const low[] = {"low_x", "low_y", "low_z"}, *const high[] = {"high_x", "high_y", "high_z"};
+    launch_set_int(g->select, "n", (int)p->n_owned);
+    launch_set_int(g->select, "rank", rank);
+    launch_bind_buffer(g->select, "position", &p->field[FIELD_STATE].now);
+    launch_bind_buffer(g->select, "reach", &p->reach);
+    launch_bind_buffer(g->select, "at", &g->pick);
+    for (int a = 0; a < 3; a++) {
+        launch_set_real(g->select, low[a], box->low[a]);
+        launch_set_real(g->select, high[a], box->high[a]);
+    }
+    launch_set_real(g->select, "far_reach", box->reach);
+    launch_run(g->select, dev->compute, p->n_owned, 0, NULL, NULL);
+    int64_t n = scan_total(dev, scan, &g->pick, p->n_owned);
+    buffer_reserve(dev, piece, (size_t)n * sizeof(cl_int));
+    launch_set_int(g->compact, "n", (int)p->n_owned);
+    launch_bind_buffer(g->compact, "at", &g->pick);
+    launch_bind_buffer(g->compact, "index", piece);
+    launch_run(g->compact, dev->compute, p->n_owned, 0, NULL, NULL);
+    return n;
+}
+
+/* Sends rows of `from` picked by g->index to their neighbours and stores what comes in at row n_owned of it. */
+static void exchange_rows(struct device *dev, struct ghosts *g, const struct particles *p, struct buffer *from, size_t bytes)
+{
+    struct exchange *x = &g->exchange;
+    char *send = fail_alloc((size_t)x->n_send * bytes), *recv = fail_alloc((size_t)x->n_recv * bytes);
+    buffer_reserve(dev, &x->packed, (size_t)x->n_send * bytes);
+    launch_set_int(g->gather, "n", (int)x->n_send);
+    launch_set_int(g->gather, "words", (int)(bytes / 4));
+    launch_bind_buffer(g->gather, "index", &g->index);
+    launch_bind_buffer(g->gather, "from", from);
+    launch_bind_buffer(g->gather, "to", &x->packed);
+    launch_run(g->gather, dev->compute, x->n_send, 0, NULL, NULL);
+    buffer_read(dev, &x->packed, 0, (size_t)x->n_send * bytes, send);
+    halo_exchange(x->halo, send, recv, bytes);
+    buffer_write(dev, from, (size_t)p->n_owned * bytes, (size_t)x->n_recv * bytes, recv);
+    free(send);
+    free(recv);
+}
+
+/* The index lists for all neighbours, one after the other, on the device. */
+static void choose(struct device *dev, struct ghosts *g, struct scan *scan, const struct particles *p, const struct box *all, int64_t *count_to)
+{
+    const struct comm *comm = g->comm;
+    cl_int *index = NULL;
+    int64_t n_send = 0;
+    struct buffer piece;
+    buffer_init(&piece, "ghost piece");
+    buffer_reserve(dev, &g->pick, ((size_t)p->n_owned + 1) * sizeof(cl_int));
+    for (int r = 0; r < comm->n_rank; r++) {
+        count_to[r] = 0;
+        if (r == comm->rank || !may_meet(g, &all[comm->rank], &all[r])) continue;
+        count_to[r] = select_for(dev, g, scan, p, r, &all[r], &piece);
+        index = fail_realloc(index, (size_t)(n_send + count_to[r]) * sizeof *index);
+        buffer_read(dev, &piece, 0, (size_t)count_to[r] * sizeof *index, index + n_send);
+        n_send += count_to[r];
+    }
+    buffer_reserve(dev, &g->index, (size_t)n_send * sizeof(cl_int));
+    buffer_write(dev, &g->index, 0, (size_t)n_send * sizeof(cl_int), index);
+    buffer_free(dev, &piece);
+    free(index);
+}
+
+void ghosts_refresh(struct device *dev, struct ghosts *g, struct particles *p)
+{
+    exchange_rows(dev, g, p, &p->field[FIELD_STATE].now, p->field[FIELD_STATE].bytes);
+}
+
+void ghosts_plan(
+    struct device *dev, struct ghosts *g, const struct owners *owners, struct scan *scan, struct particles *p, const struct cells_bounds *own)
+{
+    const struct comm *comm = g->comm;
+    p->n_ghost = 0;
+    if (comm->n_rank == 1) return;
+    struct box mine = {{0}, {0}, own->reach_max, p->n_owned}, *all = fail_alloc((size_t)comm->n_rank * sizeof *all);
+    int64_t *count_to = fail_alloc((size_t)comm->n_rank * sizeof *count_to);
+    memcpy(mine.low, own->low, sizeof mine.low);
+    memcpy(mine.high, own->high, sizeof mine.high);
+    comm_gather(comm, &mine, all, sizeof mine);
+    launch_set_int(g->select, "n_node", owners->n_node);
+    launch_bind_buffer(g->select, "node", &owners->node);
+    launch_bind_buffer(g->select, "cut", &owners->cut);
+    launch_bind_buffer(g->select, "domain", &owners->domain);
+    choose(dev, g, scan, p, all, count_to);
+    exchange_plan(&g->exchange, comm, count_to);
+    p->n_ghost = g->exchange.n_recv;
+    particles_reserve(dev, p, g->features, p->n_owned + p->n_ghost, p->n_owned);
+    exchange_rows(dev, g, p, &p->field[FIELD_GID].now, p->field[FIELD_GID].bytes);
+    exchange_rows(dev, g, p, &p->reach, particles_preal(g->features));
+    ghosts_refresh(dev, g, p); /* g->gather goes on with these */
+    exchange_bind(dev, &g->exchange, p->field[FIELD_STATE].bytes, false);
+    free(count_to);
+    free(all);
+}
+
+void ghosts_begin(struct device *dev, struct ghosts *g, struct timers *timers)
+{
+    if (g->comm->n_rank > 1) exchange_begin(dev, &g->exchange, g->gather, timers);
+}
+
+const cl_event *ghosts_swap(struct device *dev, struct ghosts *g, struct particles *p, cl_event *most, struct timers *timers)
+{
+    if (g->comm->n_rank == 1) return NULL;
+    return exchange_swap(dev, &g->exchange, &p->field[FIELD_STATE].now, (size_t)p->n_owned * g->exchange.record, most, timers);
+}

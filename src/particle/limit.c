@@ -1,0 +1,142 @@
+#include "limit.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "contact_table.h"
+#include "comm/fail.h"
+#include "particle.h"
+
+/* Several elements per work-item: most are then seen at a glance not to be the one. */
+enum { GROUP = 64, GROUPS_MOST = 64, PER_ITEM = 8 };
+
+struct limit {
+    struct program *program;
+    struct launch *launch;
+    struct buffer table, partial, partial_gid;
+};
+
+static void write_table(struct sim *s, struct limit *limit)
+{
+    struct particle_run *run = s->particle;
+    int n = s->scene->n_material;
+    size_t n_value = (size_t)n * (size_t)n * CONTACT_TABLE_MATERIAL;
+    double *row = fail_alloc(n_value * sizeof *row);
+    for (int k = 0; k < n * n; k++) limit_material(s->scene, k / n, k % n, row + k * CONTACT_TABLE_MATERIAL);
+    buffer_reserve(s->dev, &limit->table, n_value * particles_real(&run->features));
+    particles_write(s->dev, &limit->table, run->features.real_is_float, 0, n_value, row);
+    free(row);
+}
+
+/* Build options of the walls' program, with what pairs need besides. */
+static char *options_of(const struct features *features)
+{
+    struct features f = *features;
+    f.energy = false;
+    f.wall.linear |= f.pair.linear;
+    f.wall.hertz |= f.pair.hertz;
+    f.wall.tangential |= f.pair.tangential;
+    f.wall.tangential_damping |= f.pair.tangential_damping;
+    f.wall.rolling_epsd |= f.pair.rolling_epsd;
+    f.wall.binding |= f.pair.binding;
+    return features_options(&f, FEATURES_WALL);
+}
+
+struct limit *limit_create(struct sim *s)
+{
+    struct particle_run *run = s->particle;
+    static const char *const sources[] = {"step_limit.cl", NULL};
+    struct limit *limit = fail_alloc(sizeof *limit);
+    char *options = options_of(&run->features);
+    limit->program = program_build(s->dev, s->comm, "limit", options, sources);
+    free(options);
+    limit->launch = launch_create(limit->program, "step_limit");
+    buffer_init(&limit->table, "materials of the limit");
+    buffer_init(&limit->partial, "limit");
+    buffer_init(&limit->partial_gid, "limit, elements");
+    buffer_reserve(s->dev, &limit->partial, GROUPS_MOST * particles_real(&run->features));
+    buffer_reserve(s->dev, &limit->partial_gid, GROUPS_MOST * sizeof(int64_t));
+    write_table(s, limit);
+    launch_set_int(limit->launch, "n_material", s->scene->n_material);
+    launch_set_int(limit->launch, "kind", run->first->n > 0 ? run->first->material[0] : 0);
+    static const char *const axis[] = {"period_x", "period_y", "period_z"};
+    for (int a = 0; a < 3; a++) launch_set_real_if(limit->launch, axis[a], run->period[a]);
+    return limit;
+}
+
+void limit_free(struct device *dev, struct limit *limit)
+{
+    if (!limit) return;
+    buffer_free(dev, &limit->table);
+    buffer_free(dev, &limit->partial);
+    buffer_free(dev, &limit->partial_gid);
+    launch_free(limit->launch);
+    program_free(limit->program);
+    free(limit);
+}
+
+struct binding {
+    const char *name;
+    const struct buffer *buffer;
+};
+
+static void bind(struct sim *s, struct limit *limit)
+{
+    struct particle_run *run = s->particle;
+    const struct particles *p = run->particles;
+    const struct wall_contacts *w = run->wall_contacts;
+    const struct binding pairs[] = {{"position", &p->field[FIELD_STATE].now}, {"motion", &p->field[FIELD_STATE].now},
+        {"gid", &p->field[FIELD_GID].now}, {"row_begin", &run->pairs->now.row_begin}, {"row", &run->pairs->now.row}, {"table", &limit->table},
+        {"partial", &limit->partial}, {"partial_gid", &limit->partial_gid}};
+    for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) launch_bind_buffer(limit->launch, pairs[i].name, pairs[i].buffer);
+    if (!w) return;
+    const struct binding walls[] = {{"wall_begin", &w->now.begin}, {"candidate", &w->now.candidate}, {"primitive", &w->primitive},
+        {"wall_of", &w->wall_of}, {"wall_material", &w->material}, {"pose", &w->pose}, {"keep", &w->keep}};
+    for (size_t i = 0; i < sizeof walls / sizeof *walls; i++) launch_bind_buffer_if(limit->launch, walls[i].name, walls[i].buffer);
+}
+
+/* Of this rank. */
+static struct limit_result smallest(struct sim *s, struct limit *limit)
+{
+    struct particle_run *run = s->particle;
+    struct limit_result best = {HUGE_VAL, -1};
+    int64_t gid[GROUPS_MOST], wanted = (run->particles->n_owned + GROUP * PER_ITEM - 1) / (GROUP * PER_ITEM);
+    int n_group = wanted < GROUPS_MOST ? (int)wanted : GROUPS_MOST;
+    launch_set_int(limit->launch, "n_group", n_group);
+    launch_run(limit->launch, s->dev->compute, n_group * GROUP, 0, NULL, NULL);
+    double *dt = particles_read(s->dev, &limit->partial, run->features.real_is_float, 0, (size_t)n_group);
+    buffer_read(s->dev, &limit->partial_gid, 0, (size_t)n_group * sizeof *gid, gid);
+    for (int g = 0; g < n_group; g++) {
+        if (gid[g] < 0 || dt[g] > best.dt || (!(dt[g] < best.dt) && gid[g] > best.gid)) continue;
+        best.dt = dt[g];
+        best.gid = gid[g];
+    }
+    free(dt);
+    return best;
+}
+
+struct limit_result limit_run(struct sim *s, double dt, double share)
+{
+    struct particle_run *run = s->particle;
+    struct limit *limit = run->limit;
+    struct limit_result best = {HUGE_VAL, -1};
+    if (run->wall_contacts) {
+        wall_contacts_set_step(s->dev, run->wall_contacts, s->step);
+        if (run->features.triangle && run->wall_contacts->now.n > 0) wall_contacts_select(s->dev, run->wall_contacts, run->particles);
+    }
+    if (run->particles->n_owned > 0) {
+        bind(s, limit);
+        launch_set_int(limit->launch, "n_owned", (int)run->particles->n_owned);
+        launch_set_real(limit->launch, "dt", dt);
+        launch_set_real(limit->launch, "share", share);
+        best = smallest(s, limit);
+    }
+    double least = best.dt;
+    comm_min_f64(s->comm, &least, 1);
+    int64_t gid = best.gid >= 0 && !(best.dt > least) ? best.gid : INT64_MAX;
+    comm_min_i64(s->comm, &gid, 1);
+    best.dt = least;
+    best.gid = gid == INT64_MAX ? -1 : gid;
+    return best;
+}

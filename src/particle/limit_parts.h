@@ -1,0 +1,30 @@
+/* What limit_*.c share: the bound in double with all features, and elements in classes of like size. Private to limit_*.c. */
+#ifndef DEMOCLES_LIMIT_PARTS_H
+#define DEMOCLES_LIMIT_PARTS_H
+
+#define WITH_LINEAR 1
+#define WITH_HERTZ 1
+#define WITH_NO_ATTRACTION 1
+#define WITH_TANGENTIAL 1
+#define WITH_TANGENTIAL_DAMPING 1
+#define WITH_ROLLING_CDT 1
+#define WITH_ROLLING_EPSD 1
+#define WITH_BINDING 1
+#define WITH_ENERGY 1
+#include "kernels/contact/law_limit.h"
+#include "limit.h"
+
+struct limit_class {
+    int material;
+    int64_t n;   /* elements of the class; the smallest and the largest of a class have the same n */
+    double r, w; /* [m], 1/mass [1/kg] */
+};
+
+/* Owned by the caller. */
+struct limit_class *limit_classes(const struct scene *scene, const struct elements_host *elements, int *n_class);
+struct contact_material limit_material_of(const struct scene *scene, int a, int b);
+/* Contact of c with p (NULL: a wall), as deep as `speed` [m/s] makes it; dt [s] for its dashpots. */
+struct limit_contact limit_deepest(
+    const struct scene *scene, const struct limit_class *c, const struct limit_class *p, struct contact_material m, double speed, double dt);
+
+#endif

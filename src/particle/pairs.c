@@ -1,0 +1,220 @@
+#include "pairs.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "comm/fail.h"
+
+enum { PAIR_ALIGN = 64, ROW_FOUND = 32, LIST_BUFFERS = 11 }; /* the first two as in kernels/particle/pairs.cl, rows.cl */
+
+static void list_buffers(struct pair_list *l, struct buffer *all[LIST_BUFFERS])
+{
+    struct buffer *b[LIST_BUFFERS] = {&l->row_begin, &l->row, &l->row_gid, &l->split, &l->up_begin, &l->incidence_begin, &l->incidence, &l->pair_i,
+        &l->pair_j, &l->state, &l->history};
+    memcpy(all, b, sizeof b);
+}
+
+static void list_init(struct device *dev, struct pair_list *l)
+{
+    static const char *const name[LIST_BUFFERS] = {
+        "row begin", "rows", "row gids", "row split", "up begin", "incidence begin", "incidence", "pair i", "pair j", "pair state", "pair history"};
+    struct buffer *all[LIST_BUFFERS];
+    list_buffers(l, all);
+    for (int i = 0; i < LIST_BUFFERS; i++) {
+        buffer_init(all[i], name[i]);
+        buffer_reserve(dev, all[i], 64);
+    }
+}
+
+struct pairs *pairs_create(struct device *dev, const struct features *features, const struct program *lists, const struct program *force)
+{
+    struct pairs *pairs = fail_alloc(sizeof *pairs);
+    pairs->features = features;
+    pairs->layout = contact_layout(dev, force);
+    list_init(dev, &pairs->now);
+    list_init(dev, &pairs->old);
+    contact_arrivals_init(dev, &pairs->arrivals, "arrived pairs");
+    struct buffer *own[] = {&pairs->interior, &pairs->boundary, &pairs->result, &pairs->ledger, &pairs->found};
+    static const char *const name[] = {"interior pairs", "boundary pairs", "pair results", "pair ledger", "neighbours found"};
+    for (int i = 0; i < 5; i++) {
+        buffer_init(own[i], name[i]);
+        buffer_reserve(dev, own[i], 64);
+    }
+    pairs->rows = launch_create(lists, "rows");
+    pairs->count = launch_create(lists, "pair_count");
+    pairs->fill = launch_create(lists, "pair_fill");
+    pairs->link = launch_create(lists, "pair_link");
+    pairs->carry = launch_create(lists, "pair_carry");
+    pairs->leave = launch_create(lists, "pair_leave");
+    return pairs;
+}
+
+void pairs_free(struct device *dev, struct pairs *pairs)
+{
+    if (!pairs) return;
+    struct buffer *all[LIST_BUFFERS];
+    struct pair_list *list[] = {&pairs->now, &pairs->old};
+    for (int k = 0; k < 2; k++) {
+        list_buffers(list[k], all);
+        for (int i = 0; i < LIST_BUFFERS; i++) buffer_free(dev, all[i]);
+    }
+    contact_arrivals_free(dev, &pairs->arrivals);
+    struct buffer *own[] = {&pairs->interior, &pairs->boundary, &pairs->result, &pairs->ledger, &pairs->found};
+    for (int i = 0; i < 5; i++) buffer_free(dev, own[i]);
+    struct launch *launch[] = {pairs->rows, pairs->count, pairs->fill, pairs->link, pairs->carry, pairs->leave};
+    for (int i = 0; i < 6; i++) launch_free(launch[i]);
+    free(pairs);
+}
+
+static void build_rows(struct device *dev, struct pairs *pairs, struct cells *cells, struct scan *scan, const struct particles *p)
+{
+    struct pair_list *l = &pairs->now;
+    struct launch *rows = pairs->rows;
+    buffer_reserve(dev, &l->row_begin, ((size_t)l->n_all + 1) * sizeof(cl_int));
+    launch_set_int(rows, "n_owned", (int)l->n_owned);
+    launch_set_int(rows, "n_all", (int)l->n_all);
+    launch_set_int(rows, "n_level", cells->n_level);
+    launch_bind_buffer(rows, "position", &p->field[FIELD_STATE].now);
+    launch_bind_buffer(rows, "gid", &p->field[FIELD_GID].now);
+    launch_bind_buffer(rows, "reach", &p->reach);
+    launch_bind_buffer(rows, "grid_real", &cells->grid_real);
+    launch_bind_buffer(rows, "grid_int", &cells->grid_int);
+    launch_bind_buffer(rows, "cell_begin", &cells->begin);
+    launch_bind_buffer(rows, "member", &cells->member);
+    launch_set_real_if(rows, "period_x", cells->period[0]);
+    launch_set_real_if(rows, "period_y", cells->period[1]);
+    launch_set_real_if(rows, "period_z", cells->period[2]);
+    buffer_reserve(dev, &pairs->found, (size_t)l->n_all * ROW_FOUND * sizeof(cl_int));
+    launch_bind_buffer(rows, "found", &pairs->found);
+    launch_bind_buffer(rows, "begin", &l->row_begin);
+    launch_bind_buffer(rows, "row", &l->row);
+    launch_bind_buffer(rows, "row_gid", &l->row_gid);
+    for (int fill = 0; fill < 2; fill++) {
+        launch_set_int(rows, "fill", fill);
+        launch_run(rows, dev->compute, l->n_all, 0, NULL, NULL);
+        if (fill) break;
+        l->n_row = scan_total(dev, scan, &l->row_begin, l->n_all);
+        buffer_reserve(dev, &l->row, (size_t)l->n_row * sizeof(cl_int));
+        buffer_reserve(dev, &l->row_gid, (size_t)l->n_row * sizeof(cl_long));
+    }
+}
+
+static void count_pairs(struct device *dev, struct pairs *pairs, struct scan *scan, const struct particles *p)
+{
+    struct pair_list *l = &pairs->now;
+    size_t per_element = ((size_t)l->n_all + 1) * sizeof(cl_int);
+    struct buffer *counted[] = {&l->split, &l->up_begin, &pairs->interior, &pairs->boundary};
+    for (int i = 0; i < 4; i++) buffer_reserve(dev, counted[i], per_element);
+    buffer_reserve(dev, &l->incidence_begin, ((size_t)l->n_owned + 1) * sizeof(cl_int));
+    launch_set_int(pairs->count, "n_owned", (int)l->n_owned);
+    launch_set_int(pairs->count, "n_all", (int)l->n_all);
+    launch_bind_buffer(pairs->count, "gid", &p->field[FIELD_GID].now);
+    launch_bind_buffer(pairs->count, "row_begin", &l->row_begin);
+    launch_bind_buffer(pairs->count, "row", &l->row);
+    launch_bind_buffer(pairs->count, "row_gid", &l->row_gid);
+    launch_bind_buffer(pairs->count, "split", &l->split);
+    launch_bind_buffer(pairs->count, "interior", &pairs->interior);
+    launch_bind_buffer(pairs->count, "boundary", &pairs->boundary);
+    launch_bind_buffer(pairs->count, "incidence", &l->incidence_begin);
+    launch_run(pairs->count, dev->compute, l->n_all, 0, NULL, NULL);
+    l->n_interior = scan_total(dev, scan, &pairs->interior, l->n_all);
+    l->n_boundary = l->n_mine = scan_total(dev, scan, &pairs->boundary, l->n_all);
+    l->n_lower = l->n_owned;
+    cl_int own; /* rows of owned elements come first */
+    buffer_read(dev, &pairs->boundary, (size_t)l->n_owned * sizeof own, sizeof own, &own);
+    l->n_own = l->n_interior + own;
+    l->n_incidence = scan_total(dev, scan, &l->incidence_begin, l->n_owned);
+    l->first_boundary = (l->n_interior + PAIR_ALIGN - 1) / PAIR_ALIGN * PAIR_ALIGN;
+    int64_t n = l->first_boundary + l->n_boundary;
+    if (n > INT32_MAX / 2 - 4 * PAIR_ALIGN || l->n_row > INT32_MAX / 2)
+        fail_stop(EXIT_DEVICE, "%lld pairs on one rank are more than its lists can number; use more ranks", (long long)n);
+    l->capacity = (n + PAIR_ALIGN - 1) / PAIR_ALIGN * PAIR_ALIGN + 16; /* not a power of two, so that planes do not fall onto each other in caches */
+}
+
+/* Room for a record per pair; the last one stays zero, for the blank pair of kernels/particle/incidence.h. */
+static void reserve_results(struct device *dev, struct pairs *pairs, size_t real)
+{
+    size_t capacity = (size_t)pairs->now.capacity, bytes = (size_t)pairs->layout.result * real;
+    char *zero = fail_alloc(bytes);
+    buffer_reserve(dev, &pairs->result, capacity * bytes);
+    buffer_write(dev, &pairs->result, (capacity - 1) * bytes, bytes, zero);
+    free(zero);
+}
+
+static void fill_pairs(struct device *dev, struct pairs *pairs, const struct particles *p)
+{
+    struct pair_list *l = &pairs->now;
+    size_t real = particles_real(pairs->features), capacity = (size_t)l->capacity;
+    buffer_reserve(dev, &l->pair_i, capacity * sizeof(cl_int));
+    buffer_reserve(dev, &l->pair_j, capacity * sizeof(cl_int));
+    buffer_reserve(dev, &l->incidence, (size_t)l->n_incidence * sizeof(cl_int));
+    reserve_results(dev, pairs, real);
+    launch_set_int(pairs->fill, "n_all", (int)l->n_all);
+    launch_set_int(pairs->fill, "first_boundary", (int)l->first_boundary);
+    launch_set_int(pairs->link, "n_owned", (int)l->n_owned);
+    launch_bind_buffer(pairs->link, "gid", &p->field[FIELD_GID].now);
+    launch_bind_buffer(pairs->link, "row_gid", &l->row_gid);
+    launch_set_int(pairs->link, "blank", (int)l->capacity - 1);
+    launch_bind_buffer(pairs->link, "incidence_begin", &l->incidence_begin);
+    launch_bind_buffer(pairs->link, "incidence", &l->incidence);
+    struct launch *both[] = {pairs->fill, pairs->link};
+    for (int i = 0; i < 2; i++) {
+        launch_bind_buffer(both[i], "row_begin", &l->row_begin);
+        launch_bind_buffer(both[i], "row", &l->row);
+        launch_bind_buffer(both[i], "split", &l->split);
+        launch_bind_buffer(both[i], "up_begin", &l->up_begin);
+    }
+    launch_bind_buffer(pairs->fill, "interior", &pairs->interior);
+    launch_bind_buffer(pairs->fill, "boundary", &pairs->boundary);
+    launch_bind_buffer(pairs->fill, "pair_i", &l->pair_i);
+    launch_bind_buffer(pairs->fill, "pair_j", &l->pair_j);
+    launch_run(pairs->fill, dev->compute, l->n_all, 0, NULL, NULL);
+    launch_run(pairs->link, dev->compute, l->n_owned, 0, NULL, NULL);
+    if (!pairs->layout.remembers) return;
+    buffer_reserve(dev, &l->state, capacity * sizeof(cl_int));
+    buffer_reserve(dev, &l->history, capacity * (size_t)pairs->layout.history * real);
+    buffer_zero(dev, &l->state);
+    buffer_zero(dev, &l->history);
+}
+
+void pairs_build(struct device *dev, struct pairs *pairs, struct cells *cells, struct scan *scan, const struct particles *p)
+{
+    struct pair_list older = pairs->old;
+    pairs->old = pairs->now;
+    pairs->now = older;
+    pairs->now.n_owned = p->n_owned;
+    pairs->now.n_all = p->n_owned + p->n_ghost;
+    build_rows(dev, pairs, cells, scan, p);
+    count_pairs(dev, pairs, scan, p);
+    fill_pairs(dev, pairs, p);
+    if (pairs->features->energy) {
+        buffer_reserve(dev, &pairs->ledger, (size_t)pairs->now.capacity * CONTACT_LEDGER_WIDTH * sizeof(cl_double));
+        buffer_zero(dev, &pairs->ledger);
+    }
+}
+
+void pairs_carry(struct device *dev, struct pairs *pairs, const struct particles *p, const struct buffer *old_index)
+{
+    struct pair_list *l = &pairs->now, *o = &pairs->old;
+    struct launch *k = pairs->carry;
+    if (!pairs->layout.remembers) return;
+    launch_set_int(k, "n_owned", (int)l->n_owned);
+    launch_set_int(k, "n_interior", (int)l->n_interior);
+    launch_set_int(k, "first_boundary", (int)l->first_boundary);
+    launch_set_int(k, "end", (int)(l->first_boundary + l->n_boundary));
+    launch_set_int(k, "n_old", (int)o->n_owned);
+    launch_set_int(k, "width", pairs->layout.history);
+    launch_set_int(k, "capacity", (int)l->capacity);
+    launch_set_int(k, "old_capacity", (int)o->capacity);
+    launch_set_int(k, "arrival_capacity", (int)pairs->arrivals.n_contact);
+    const struct {
+        const char *name;
+        const struct buffer *buffer;
+    } bind[] = {{"gid", &p->field[FIELD_GID].now}, {"pair_i", &l->pair_i}, {"pair_j", &l->pair_j}, {"old_index", old_index},
+        {"old_row_begin", &o->row_begin}, {"old_row_gid", &o->row_gid}, {"old_incidence_begin", &o->incidence_begin},
+        {"old_incidence", &o->incidence}, {"arrival_begin", &pairs->arrivals.begin}, {"arrival_gid", &pairs->arrivals.key},
+        {"arrival_state", &pairs->arrivals.state}, {"arrival_history", &pairs->arrivals.history}, {"old_state", &o->state},
+        {"old_history", &o->history}, {"state", &l->state}, {"history", &l->history}};
+    for (size_t i = 0; i < sizeof bind / sizeof *bind; i++) launch_bind_buffer(k, bind[i].name, bind[i].buffer);
+    launch_run(k, dev->compute, l->first_boundary + l->n_boundary, 0, NULL, NULL);
+}

@@ -1,0 +1,107 @@
+/* The particle method before there is a device: walls and elements from the scene, their extent, the time step. */
+#include "particle.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "results/digest.h"
+#include "comm/fail.h"
+#include "results/h5_check.h"
+#include "run/resume.h"
+#include "scene/scene_report.h"
+
+void particle_read(struct sim *s)
+{
+    struct particle_run *run = s->particle = fail_alloc(sizeof *s->particle);
+    struct scene_errors errors = {NULL, 0};
+    run->walls = walls_create(s->scene, &errors);
+    run->first = generate_elements(s->scene, &errors);
+    if (run->walls && run->first) generate_check_walls(s->scene, run->walls, run->first, &errors);
+    scene_report_errors(s->comm, &errors);
+    if (run->first->n > INT32_MAX / 2) fail_stop_together(EXIT_SCENE, "more than %d elements", INT32_MAX / 2);
+}
+
+static uint64_t add(uint64_t sum, enum column_type type, const void *data, int64_t n)
+{
+    return digest_mix((sum ^ h5_check_sum(type, data, n, 0)) + DIGEST_G);
+}
+
+static void sum_inputs(struct sim *s)
+{
+    struct particle_run *run = s->particle;
+    const struct elements_host *e = run->first;
+    uint64_t sum = (uint64_t)e->n;
+    sum = add(sum, COLUMN_F64, e->x, 3 * e->n);
+    sum = add(sum, COLUMN_F64, e->radius, e->n);
+    sum = add(sum, COLUMN_I32, e->material, e->n);
+    sum = add(sum, COLUMN_F64, run->walls->primitive, 12 * (int64_t)run->walls->n_primitive);
+    memcpy(&s->inputs, &sum, sizeof sum);
+}
+
+/* Box of the domain: as given, else around elements and walls with room beyond, so that what falls out of sight is out of it. */
+static void set_domain(struct sim *s)
+{
+    struct particle_run *run = s->particle;
+    const struct domain *d = &s->scene->domain;
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, size = 0, r = 0;
+    for (int64_t i = 0; i < run->first->n; i++) {
+        for (int a = 0; a < 3; a++) {
+            low[a] = fmin(low[a], run->first->x[3 * i + a]);
+            high[a] = fmax(high[a], run->first->x[3 * i + a]);
+        }
+        r = fmax(r, run->first->radius[i]);
+    }
+    for (int w = 0; w < run->walls->n_wall; w++)
+        for (int a = 0; a < 3; a++) {
+            double b[2] = {run->walls->wall_low[3 * w + a], run->walls->wall_high[3 * w + a]};
+            if (isfinite(b[0])) low[a] = fmin(low[a], b[0]);
+            if (isfinite(b[1])) high[a] = fmax(high[a], b[1]);
+        }
+    for (int a = 0; a < 3; a++) size = fmax(size, high[a] - low[a]);
+    for (int a = 0; a < 3; a++) {
+        run->domain[a] = d->has_box ? d->min[a] : low[a] - 0.05 * size - 4 * r;
+        run->domain[3 + a] = d->has_box ? d->max[a] : high[a] + 0.05 * size + 4 * r;
+        run->period[a] = d->periodic[a] ? d->max[a] - d->min[a] : 0;
+    }
+}
+
+static void set_step(struct sim *s)
+{
+    const struct scene_time *t = &s->scene->time;
+    s->dt = s->from ? s->from->dt : t->step > 0 ? t->step : t->safety * particle_limit_dense(s);
+    if (!(s->dt > 0) || isinf(s->dt))
+        fail_stop_together(EXIT_SCENE, "%s: time.step: auto finds no limit in this scene; give a value", s->scene->path);
+}
+
+/* What the run has kept account of it goes on to; what it has not cannot begin now. */
+static void keep_features(struct sim *s)
+{
+    bool orientation = h5_has(s->from->reader, "elements", "orientation"), energy = h5_has(s->from->reader, "pairs", "ledger");
+    const char *missing = s->particle->features.energy && !energy             ? "a measure of energy"
+                          : s->particle->features.orientation && !orientation ? "orientation"
+                                                                              : NULL;
+    if (missing)
+        fail_stop_together(EXIT_SCENE, "%s cannot begin in a run that goes on: '%s' has nothing of what it was until then", missing, s->from->path);
+    s->particle->features.orientation = orientation;
+    s->particle->features.energy = energy;
+}
+
+void particle_plan(struct sim *s)
+{
+    struct particle_run *run = s->particle;
+    run->features = features_of(s->scene, run->walls, run->first);
+    sum_inputs(s);
+    if (s->from) keep_features(s);
+    set_domain(s);
+    set_step(s);
+}
+
+void particle_warn(struct sim *s)
+{
+    struct particle_run *run = s->particle;
+    struct scene_errors warnings = {NULL, 0};
+    limit_warnings(s->scene, run->first, limit_speed(s->scene, run->walls, run->first), s->dt, &warnings);
+    for (int i = 0; i < warnings.n; i++) log_warn(s->log, "%s", warnings.text[i]);
+    scene_errors_free(&warnings);
+}

@@ -1,0 +1,108 @@
+/* What the record of a run says of the particle method. */
+#include "particle.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "results/digest.h"
+#include "energy.h"
+#include "comm/fail.h"
+#include "results/report.h"
+
+/* Digest of the state as it lies on the device, in its own bits. Returns false if there are NaNs. */
+bool particle_digest(struct sim *s, uint64_t *digest)
+{
+    struct particle_run *run = s->particle;
+    const struct particles *p = run->particles;
+    const struct features *f = &run->features;
+    size_t n = (size_t)p->n_owned, bytes = p->field[FIELD_STATE].bytes, real = particles_real(f), preal = particles_preal(f);
+    int stride = (int)(bytes / real);
+    char *state = fail_alloc(n * bytes), *q = fail_alloc(n * 4 * real), *none = fail_alloc(n * 4 * real);
+    int64_t *gid = fail_alloc(n * sizeof *gid);
+    buffer_read(s->dev, &p->field[FIELD_STATE].now, 0, n * bytes, state);
+    buffer_read(s->dev, &p->field[FIELD_GID].now, 0, n * sizeof *gid, gid);
+    if (f->orientation) buffer_read(s->dev, &p->field[FIELD_ORIENTATION].now, 0, n * 4 * real, q);
+    for (size_t i = 0; i < n && !f->orientation; i++) {
+        if (f->real_is_float) ((float *)(void *)q)[4 * i] = 1;
+        else ((double *)(void *)q)[4 * i] = 1;
+    }
+    const char *motion = state + 4 * preal;
+    struct digest_part part[4] = {{state, f->position_is_float, 3, (int)(bytes / preal)}, {motion, f->real_is_float, 3, stride},
+        {q, f->real_is_float, 4, 4}, {f->spin ? motion + 4 * real : none, f->real_is_float, 3, f->spin ? stride : 4}};
+    int64_t n_nan = digest_of_all(s->comm, gid, p->n_owned, part, 4, digest);
+    void *own[] = {state, q, none, gid};
+    for (int i = 0; i < 4; i++) free(own[i]);
+    return n_nan == 0;
+}
+
+int64_t particle_number(const struct sim *s)
+{
+    return s->particle->particles->n_global;
+}
+
+int64_t particle_owned(const struct sim *s)
+{
+    return s->particle->particles->n_owned;
+}
+
+void particle_count(const struct sim *s, struct step_counts *counts)
+{
+    struct particle_run *run = s->particle;
+    const struct exchange *ghosts = &run->ghosts->exchange, *x = run->assigned ? assigned_exchange(run->assigned, ASSIGNED_STATES) : ghosts;
+    struct halo_traffic sent = exchange_sent(x), back = {0};
+    if (run->assigned) back = exchange_sent(assigned_exchange(run->assigned, ASSIGNED_RESULTS));
+    sent.bytes += back.bytes;
+    sent.messages += back.messages;
+    *counts = (struct step_counts){run->pairs->now.n_own, sent, ghosts->halo ? ghosts->halo->n_send : 0, x->n_send};
+}
+
+void particle_report_features(const struct sim *s, struct report *r)
+{
+    for (int i = 0; features_name(i); i++) report_integer(r, features_name(i), features_value(&s->particle->features, i));
+}
+
+void particle_report_energy(struct sim *s, struct report *r, bool observed)
+{
+    struct particle_run *run = s->particle;
+    struct energy_sums now = run->energy_start;
+    if (observed) energy_now(s, &now);
+    const struct energy_sums *both[] = {&run->energy_start, &now};
+    static const char *const name[] = {"start", "end"};
+    report_begin(r, "energy");
+    for (int k = 0; k < 2; k++) {
+        const struct energy_sums *e = both[k];
+        report_begin(r, name[k]);
+        report_number(r, "kinetic", e->kinetic);
+        report_number(r, "rotational", e->rotational);
+        report_number(r, "gravity", e->gravity);
+        if (run->features.energy) {
+            report_number(r, "elastic", e->elastic);
+            report_number(r, "dashpot_normal", e->dashpot_n);
+            report_number(r, "dashpot_tangential", e->dashpot_t);
+            report_number(r, "sliding", e->sliding);
+            report_number(r, "rolling", e->rolling);
+            report_number(r, "bonds", e->bonds);
+            report_number(r, "wall_work", e->wall_work);
+            report_number(r, "removed", e->removed);
+        }
+        report_end(r);
+    }
+    report_number(r, "balance_error", run->features.energy && observed ? energy_balance(&run->energy_start, &now) : (double)NAN);
+    report_end(r);
+    report_numbers(r, "momentum", now.momentum, 3);
+}
+
+void particle_report_kernels(const struct sim *s, struct report *r)
+{
+    struct particle_run *run = s->particle;
+    struct launch *all[] = {run->pair_force, run->wall_force, run->wall_contacts ? run->wall_contacts->keep_launch : NULL, run->gather,
+        run->kick_drift, run->ghosts->gather, run->pairs->rows, run->pairs->carry, run->wall_contacts ? run->wall_contacts->rows : NULL};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        if (!all[i]) continue;
+        report_begin(r, all[i] == run->ghosts->gather ? "pack_ghosts" : all[i]->name);
+        report_number(r, "seconds", launch_seconds(all[i]));
+        report_integer(r, "launches", all[i]->n_run);
+        report_end(r);
+    }
+}

@@ -1,0 +1,249 @@
+/* The particle method's set-up: kernels for this scene's features, elements on their ranks, first lists, forces at step 0. */
+#include "particle.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "kernels/common/batch.h"
+#include "contact_table.h"
+#include "energy.h"
+#include "comm/fail.h"
+#include "limit.h"
+#include "run/output.h"
+
+/* Room to move between list builds, to begin with: share of the smallest radius, and steps of own motion. */
+#define SKIN_START 0.01
+enum { HORIZON_STEPS = 60 };
+
+static const char *const source_lists[] = {"scan.cl", "cells.cl", "rows.cl", "pairs.cl", "records.cl", "select.cl", "wall_lists.cl", NULL};
+static const char *const source_pair[] = {"pair_force.cl", "layout.cl", NULL};
+static const char *const source_wall[] = {"wall_keep.cl", "wall_force.cl", "layout.cl", NULL};
+static const char *const source_body[] = {"gather.cl", NULL};
+static const char *const source_assign[] = {"assign.cl", NULL};
+
+static struct program *build(struct sim *s, const char *name, enum features_program kind, const char *const *sources)
+{
+    char *options = features_options(&s->particle->features, kind);
+    struct program *program = program_build(s->dev, s->comm, name, options, sources);
+    free(options);
+    return program;
+}
+
+/* Number arguments of a force kernel, or the table of all pairs of materials. */
+static void set_parameters(struct sim *s, struct launch *launch, struct buffer *buffer, bool wall, bool by_table)
+{
+    struct particle_run *run = s->particle;
+    int n = s->scene->n_material, n_row = by_table ? n * n : 1;
+    int first_b = wall ? (s->scene->n_wall ? s->scene->wall[0].material : 0) : run->first->material[0];
+    int width = run->features.sizes ? CONTACT_TABLE_MATERIAL : CONTACT_TABLE_PARAMETER;
+    double *row = fail_alloc((size_t)n_row * (size_t)width * sizeof *row);
+    double r = run->first->radius[0], m = 4.0 / 3.0 * M_PI * r * r * r * s->scene->material[run->first->material[0]].density;
+    for (int k = 0; k < n_row; k++) {
+        int a = by_table ? k / n : run->first->material[0], b = by_table ? k % n : first_b;
+        if (run->features.sizes) contact_table_material(s->scene, a, b, row + k * width);
+        else contact_table_parameters(s->scene, a, b, wall, r, m, s->dt, row + k * width);
+    }
+    if (launch_has(launch, "table")) {
+        buffer_reserve(s->dev, buffer, (size_t)n_row * (size_t)width * particles_real(&run->features));
+        particles_write(s->dev, buffer, run->features.real_is_float, 0, (size_t)n_row * (size_t)width, row);
+        launch_bind_buffer(launch, "table", buffer);
+    } else {
+        contact_table_set(launch, row);
+    }
+    launch_set_int_if(launch, "n_material", n);
+    launch_set_real_if(launch, "radius", r);
+    free(row);
+}
+
+static void set_motion(struct sim *s, struct launch *launch)
+{
+    struct particle_run *run = s->particle;
+    double r = run->first->radius[0], m = 4.0 / 3.0 * M_PI * r * r * r * s->scene->material[run->first->material[0]].density;
+    launch_set_real_if(launch, "radius", r);
+    launch_set_real_if(launch, "inverse_m", 1 / m);
+    launch_set_real(launch, "gravity_x", s->scene->gravity[0]);
+    launch_set_real(launch, "gravity_y", s->scene->gravity[1]);
+    launch_set_real(launch, "gravity_z", s->scene->gravity[2]);
+    launch_set_real(launch, "dt", s->dt);
+    launch_set_real(launch, "half_dt", 0.5 * s->dt);
+    launch_set_real(launch, "margin_dt", WATCH_MARGIN * s->dt);
+}
+
+static void create_kernels(struct sim *s)
+{
+    struct particle_run *run = s->particle;
+    run->program_lists = build(s, "lists", FEATURES_BODY, source_lists);
+    run->program_pair = build(s, "pairs", FEATURES_PAIR, source_pair);
+    run->program_body = build(s, "motion", FEATURES_BODY, source_body);
+    run->program_wall = run->features.walls ? build(s, "walls", FEATURES_WALL, source_wall) : NULL;
+    if (s->scene->partition.boundary == CUT_PAIRS_ASSIGNED && s->comm->n_rank > 1)
+        run->program_assign = build(s, "assign", FEATURES_BODY, source_assign);
+    run->select_room = launch_create(run->program_lists, "select_room");
+    run->pair_force = launch_create(run->program_pair, "pair_force");
+    run->wall_force = run->program_wall ? launch_create(run->program_wall, "wall_force") : NULL;
+    launch_set_batch(run->pair_force, BATCH);
+    if (run->wall_force) launch_set_batch(run->wall_force, BATCH);
+    run->gather = launch_create(run->program_body, "gather");
+    run->kick_drift = launch_create(run->program_body, "kick_drift");
+    buffer_init(&run->table_pair, "pair table");
+    buffer_init(&run->table_wall, "wall table");
+    set_parameters(s, run->pair_force, &run->table_pair, false, run->features.materials);
+    if (run->wall_force) set_parameters(s, run->wall_force, &run->table_wall, true, run->features.wall_table);
+    static const char *const axis[] = {"period_x", "period_y", "period_z"};
+    for (int a = 0; a < 3; a++) launch_set_real_if(run->pair_force, axis[a], run->period[a]);
+    launch_set_real(run->pair_force, "dt", s->dt);
+    if (run->wall_force) launch_set_real(run->wall_force, "dt", s->dt);
+    set_motion(s, run->gather);
+    set_motion(s, run->kick_drift);
+}
+
+static void bind_all(struct launch *launch, const char *const *name, const struct buffer *const *buffer)
+{
+    for (int i = 0; name[i]; i++) launch_bind_buffer_if(launch, name[i], buffer[i]);
+}
+
+void particle_bind(struct sim *s)
+{
+    struct particle_run *run = s->particle;
+    struct particles *p = run->particles;
+    struct pair_list *l = &run->pairs->now;
+    static const char *const pair_name[] = {"position", "motion", "pair_i", "pair_j", "state", "history", "ledger", "result", NULL};
+    const struct buffer *state = &p->field[FIELD_STATE].now;
+    bind_all(run->pair_force, pair_name,
+        (const struct buffer *const[]){state, state, &l->pair_i, &l->pair_j, &l->state, &l->history, &run->pairs->ledger, &run->pairs->result});
+    launch_set_int(run->pair_force, "capacity", (int)l->capacity);
+    static const char *const body_name[] = {"position", "motion", "incidence_begin", "incidence", "result", "wall_begin", "wall_result",
+        "orientation", "force", "torque", "reference", "flags", NULL};
+    struct wall_contacts *w = run->wall_contacts;
+    const struct buffer *body[] = {state, state, &l->incidence_begin, &l->incidence, &run->pairs->result, w ? &w->now.begin : NULL,
+        w ? &w->result : NULL, &p->field[FIELD_ORIENTATION].now, &p->force, &p->torque, &p->reference, &p->flags};
+    bind_all(run->gather, body_name, body);
+    bind_all(run->kick_drift, body_name, body);
+    launch_set_int(run->gather, "n_owned", (int)p->n_owned);
+    launch_set_int(run->kick_drift, "n_owned", (int)p->n_owned);
+    if (!w) return;
+    static const char *const wall_name[] = {"position", "motion", "candidate", "candidate_element", "primitive", "wall_of", "pose", "keep", "state",
+        "history", "ledger", "wall_material", "result", NULL};
+    bind_all(run->wall_force, wall_name,
+        (const struct buffer *const[]){state, state, &w->now.candidate, &w->now.element, &w->primitive, &w->wall_of, &w->pose, &w->keep,
+            &w->now.state, &w->now.history, &w->ledger, &w->material, &w->result});
+    launch_set_int(run->wall_force, "capacity", (int)w->now.capacity);
+}
+
+void particle_spread(struct sim *s, const double *x, int64_t n)
+{
+    struct particle_run *run = s->particle;
+    int64_t *weight = fail_alloc((size_t)n * sizeof *weight);
+    for (int64_t i = 0; i < n; i++) weight[i] = 1;
+    run->rcb = rcb_create(s->comm, s->comm->n_rank, NULL, x, weight, n);
+    owners_set_tree(s->dev, run->owners, run->rcb);
+    free(weight);
+}
+
+/* Every rank has all elements and takes its own. */
+static void distribute(struct sim *s)
+{
+    struct particle_run *run = s->particle;
+    const struct elements_host *e = run->first;
+    int64_t share = (e->n + s->comm->n_rank - 1) / s->comm->n_rank, begin = share * s->comm->rank;
+    int64_t n = e->n - begin < share ? e->n - begin : share;
+    if (n < 0) n = 0;
+    particle_spread(s, n > 0 ? e->x + 3 * begin : e->x, n);
+    unsigned char *take = fail_alloc((size_t)e->n);
+    for (int64_t i = 0; i < e->n; i++) take[i] = rcb_owner(run->rcb, e->x + 3 * i) == s->comm->rank;
+    particles_upload(s->dev, run->particles, &run->features, e, s->scene, take);
+    free(take);
+}
+
+static double smallest_radius(const struct elements_host *e)
+{
+    double r = INFINITY;
+    for (int64_t i = 0; i < e->n; i++) r = fmin(r, e->radius[i]);
+    return r;
+}
+
+/* Forces of step 0: velocities are of the same time as positions, nothing has moved yet. A time step of almost nothing says so to the laws. */
+static void first_forces(struct sim *s)
+{
+    struct particle_run *run = s->particle;
+    launch_set_real(run->pair_force, "dt", 1e-9 * s->dt);
+    if (run->wall_force) launch_set_real(run->wall_force, "dt", 1e-9 * s->dt);
+    launch_set_real(run->gather, "half_dt", 0);
+    particle_ops.advance(s, true);
+    launch_set_real(run->pair_force, "dt", s->dt);
+    if (run->wall_force) launch_set_real(run->wall_force, "dt", s->dt);
+    launch_set_real(run->gather, "half_dt", 0.5 * s->dt);
+}
+
+/* Elements as generated, forces at step 0. */
+static void start(struct sim *s)
+{
+    struct particle_run *run = s->particle;
+    run->skin = SKIN_START * smallest_radius(run->first);
+    distribute(s);
+    if (run->wall_contacts) wall_contacts_set_step(s->dev, run->wall_contacts, 0);
+    particle_build(s);
+    particle_bind(s);
+    run->limit = limit_create(s);
+    if (s->comm->n_rank > 1) particle_cut(s); /* now that interactions are known */
+    particle_regroup(s);                      /* its kernels are compiled before the clock runs, and what starts outside leaves at once */
+    s->n_rebuild = 0;
+    balance_restart(s->balance);
+    first_forces(s);
+    energy_now(s, &run->energy_start);
+}
+
+void particle_setup(struct sim *s)
+{
+    struct particle_run *run = s->particle;
+    s->n_first = run->first->n;
+    run->left = fail_alloc((size_t)s->scene->n_measure * sizeof *run->left);
+    log_print(
+        s->log, "%lld element%s, %d wall%s", (long long)s->n_first, s->n_first == 1 ? "" : "s", s->scene->n_wall, s->scene->n_wall == 1 ? "" : "s");
+    if (run->features.energy) sim_require_double(s);
+    create_kernels(s);
+    run->particles = particles_create(s->dev, &run->features, run->program_lists);
+    run->scan = scan_create(s->dev, run->program_lists);
+    run->cells = cells_create(s->dev, &run->features, run->program_lists, run->period, run->domain);
+    run->pairs = pairs_create(s->dev, &run->features, run->program_lists, run->program_pair);
+    run->owners = owners_create(s->dev, s->comm, &run->features, run->program_lists, run->period, run->domain);
+    run->ghosts = ghosts_create(s->dev, s->comm, &run->features, run->program_lists, run->period);
+    if (run->program_assign)
+        run->assigned = assigned_create(s->dev, s->comm, run->program_assign, run->program_lists, particles_real(&run->features));
+    if (run->features.walls)
+        run->wall_contacts =
+            wall_contacts_create(s->dev, s->comm, &run->features, s->scene, run->walls, s->dt, run->program_lists, run->program_wall);
+    run->energy = energy_create(s);
+    run->horizon = HORIZON_STEPS * s->dt;
+    if (s->from) particle_resume(s);
+    else start(s);
+    if (s->options->profile) balance_record(s->balance, s->options->dir, s->from ? (double)s->step * s->dt : -1);
+}
+
+void particle_free(struct sim *s)
+{
+    struct particle_run *run = s->particle;
+    if (!run) return;
+    struct launch *launch[] = {run->select_room, run->pair_force, run->wall_force, run->gather, run->kick_drift};
+    struct program *program[] = {run->program_lists, run->program_pair, run->program_wall, run->program_body, run->program_assign};
+    if (run->ghosts) exchange_settle(s->dev, &run->ghosts->exchange);
+    limit_free(s->dev, run->limit);
+    energy_free(s->dev, run->energy);
+    assigned_free(s->dev, run->assigned);
+    ghosts_free(s->dev, run->ghosts);
+    owners_free(s->dev, run->owners);
+    wall_contacts_free(s->dev, run->wall_contacts);
+    pairs_free(s->dev, run->pairs);
+    cells_free(s->dev, run->cells);
+    scan_free(s->dev, run->scan);
+    particles_free(s->dev, run->particles);
+    rcb_free(run->rcb);
+    walls_free(run->walls);
+    generate_free(run->first);
+    free(run->left);
+    buffer_free(s->dev, &run->table_pair);
+    buffer_free(s->dev, &run->table_wall);
+    for (int i = 0; i < 5; i++) launch_free(launch[i]);
+    for (int i = 0; i < 5; i++) program_free(program[i]);
+    free(run);
+}

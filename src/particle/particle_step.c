@@ -1,0 +1,130 @@
+/* One step of the particle method. The host only enqueues, except in ghosts_swap, where it moves messages while the device works, and in watch_vote,
+ * where
+ * it waits for a flag of the step before.
+ *
+ *   forces at t^n    interior pairs and walls beside the exchange, then pairs with ghosts; where those are assigned to one side (assigned.h) some
+ *                    interior pairs are left for the time in which their results travel
+ *   gather           sum in fixed order, kick; unless the step is observed also the next kick and drift, to t^{n+1} */
+#include "particle.h"
+
+#include "kernels/common/batch.h"
+#include "run/output.h"
+#include "base/signals.h"
+#include "device/trace.h"
+
+static void launch_pairs(struct sim *s, int64_t first, int64_t n, const cl_event *wait, cl_event *done)
+{
+    struct particle_run *run = s->particle;
+    if (n > 0) {
+        launch_set_int(run->pair_force, "first", (int)first);
+        launch_set_int(run->pair_force, "end", (int)(first + n));
+    }
+    if (n > 0 || done) launch_run(run->pair_force, s->dev->compute, n, wait ? 1 : 0, wait, done);
+}
+
+/* Interior pairs first <= p < end. With messages to come, `most` is the event of their larger part: when it is over the host has time to pass on what
+ * came, while the device does the rest. */
+static void launch_interior(struct sim *s, int64_t first, int64_t end, cl_event *most)
+{
+    int64_t middle = s->comm->n_rank > 1 ? first + (end - first) * 3 / 4 / BATCH * BATCH : end;
+    trace_part(s->dev->trace, "interior");
+    launch_pairs(s, first, middle - first, NULL, s->comm->n_rank > 1 ? most : NULL);
+    launch_pairs(s, middle, end - middle, NULL, NULL);
+    trace_part(s->dev->trace, NULL);
+}
+
+/* Results of boundary pairs to and from the ranks that do not compute them, under the interior pairs from `first` on. */
+static void send_back(struct sim *s, int64_t first)
+{
+    struct particle_run *run = s->particle;
+    cl_event most = NULL;
+    assigned_begin(s->dev, run->assigned, ASSIGNED_RESULTS, &s->timers);
+    launch_interior(s, first, run->pairs->now.n_interior, &most);
+    device_flush(s->dev);
+    assigned_swap(s->dev, run->assigned, ASSIGNED_RESULTS, &most, &s->timers);
+}
+
+static void launch_walls(struct sim *s)
+{
+    struct particle_run *run = s->particle;
+    struct wall_contacts *w = run->wall_contacts;
+    if (!w || w->now.n == 0) return;
+    if (run->features.triangle) wall_contacts_select(s->dev, w, run->particles);
+    launch_set_int(run->wall_force, "n_candidate", (int)w->now.n);
+    launch_run(run->wall_force, s->dev->compute, w->now.n, 0, NULL, NULL);
+}
+
+void particle_forces(struct sim *s)
+{
+    struct particle_run *run = s->particle;
+    const struct pair_list *l = &run->pairs->now;
+    int64_t n_first = run->assigned ? l->n_interior / 2 / BATCH * BATCH : l->n_interior;
+    cl_event most = NULL;
+    if (run->wall_contacts) wall_contacts_set_step(s->dev, run->wall_contacts, s->step);
+    if (run->assigned) assigned_begin(s->dev, run->assigned, ASSIGNED_STATES, &s->timers);
+    else ghosts_begin(s->dev, run->ghosts, &s->timers);
+    launch_interior(s, 0, n_first, &most);
+    launch_walls(s);
+    device_flush(s->dev);
+    const cl_event *arrived = NULL;
+    if (run->assigned) assigned_swap(s->dev, run->assigned, ASSIGNED_STATES, &most, &s->timers);
+    else arrived = ghosts_swap(s->dev, run->ghosts, run->particles, &most, &s->timers);
+    trace_part(s->dev->trace, "boundary");
+    launch_pairs(s, l->first_boundary, l->n_mine, arrived, NULL);
+    trace_part(s->dev->trace, NULL);
+    if (run->assigned) send_back(s, n_first);
+}
+
+/* After the drift to the next step. */
+static void read_flags(struct sim *s)
+{
+    if (watch_due(s->step + 1)) watch_read(s->dev, &s->watch, &s->particle->particles->flags);
+    else device_flush(s->dev);
+}
+
+static void advance(struct sim *s, bool observe)
+{
+    struct particle_run *run = s->particle;
+    particle_forces(s);
+    if (watch_due(s->step)) watch_vote(&s->watch, s->comm, output_stop_wanted(s) ? WATCH_STOP : 0);
+    launch_set_int(run->gather, "observe", observe);
+    launch_run(run->gather, s->dev->compute, run->particles->n_owned, 0, NULL, NULL);
+    if (!observe) read_flags(s);
+}
+
+static void resume(struct sim *s)
+{
+    struct particle_run *run = s->particle;
+    launch_run(run->kick_drift, s->dev->compute, run->particles->n_owned, 0, NULL, NULL);
+    read_flags(s);
+}
+
+static bool stale(struct sim *s)
+{
+    struct particle_run *run = s->particle;
+    return run->wall_contacts && wall_contacts_stale(run->wall_contacts, s->step, run->box, run->box + 3);
+}
+
+const struct step_ops particle_ops = {
+    .name = "particles",
+    .read = particle_read,
+    .plan = particle_plan,
+    .setup = particle_setup,
+    .warn = particle_warn,
+    .free = particle_free,
+    .stale = stale,
+    .regroup = particle_regroup,
+    .advance = advance,
+    .resume = resume,
+    .check_limit = particle_check_limit,
+    .n_element = particle_number,
+    .frame = particle_frame,
+    .measure_columns = particle_measure_columns,
+    .measure = particle_measure,
+    .digest = particle_digest,
+    .n_owned = particle_owned,
+    .count = particle_count,
+    .report_features = particle_report_features,
+    .report_energy = particle_report_energy,
+    .report_kernels = particle_report_kernels,
+};

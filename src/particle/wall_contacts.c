@@ -1,0 +1,279 @@
+#include "wall_contacts.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "comm/fail.h"
+
+enum { POSE_WIDTH = 22, LIST_BUFFERS = 5, OWN_BUFFERS = 11 };
+
+static void list_buffers(struct wall_list *l, struct buffer *all[LIST_BUFFERS])
+{
+    struct buffer *b[LIST_BUFFERS] = {&l->begin, &l->candidate, &l->element, &l->state, &l->history};
+    memcpy(all, b, sizeof b);
+}
+
+static void own_buffers(struct wall_contacts *w, struct buffer *all[OWN_BUFFERS])
+{
+    struct buffer *b[OWN_BUFFERS] = {
+        &w->primitive, &w->bounds, &w->features_of, &w->wall_of, &w->material, &w->room, &w->pose, &w->keep, &w->result, &w->ledger, &w->batch};
+    memcpy(all, b, sizeof b);
+}
+
+static void init_buffers(struct device *dev, struct wall_contacts *w)
+{
+    static const char *const name[OWN_BUFFERS] = {"wall primitives", "wall bounds", "wall features", "wall of primitive", "wall material",
+        "wall room", "wall poses", "wall keep", "wall results", "wall ledger", "wall pose batch"};
+    static const char *const list_name[LIST_BUFFERS] = {"wall begin", "wall candidates", "wall candidate elements", "wall state", "wall history"};
+    struct buffer *own[OWN_BUFFERS], *list[LIST_BUFFERS];
+    struct wall_list *lists[] = {&w->now, &w->old};
+    own_buffers(w, own);
+    for (int i = 0; i < OWN_BUFFERS; i++) {
+        buffer_init(own[i], name[i]);
+        buffer_reserve(dev, own[i], 64);
+    }
+    for (int k = 0; k < 2; k++) {
+        list_buffers(lists[k], list);
+        for (int i = 0; i < LIST_BUFFERS; i++) {
+            buffer_init(list[i], list_name[i]);
+            buffer_reserve(dev, list[i], 64);
+        }
+    }
+    contact_arrivals_init(dev, &w->arrivals, "arrived wall contacts");
+}
+
+static void upload_walls(struct device *dev, struct wall_contacts *w, const struct scene *scene)
+{
+    const struct walls *walls = w->walls;
+    bool is_float = w->features->position_is_float;
+    size_t n = (size_t)walls->n_primitive, preal = particles_preal(w->features), n_wall = (size_t)walls->n_wall;
+    double *bounds = fail_alloc(6 * n * sizeof *bounds);
+    cl_int *material = fail_alloc(n_wall * sizeof *material);
+    for (size_t i = 0; i < n; i++)
+        for (size_t a = 0; a < 3; a++) {
+            bounds[6 * i + a] = fmax(walls->low[3 * i + a], -1e30);
+            bounds[6 * i + 3 + a] = fmin(walls->high[3 * i + a], 1e30);
+        }
+    for (size_t i = 0; i < n_wall; i++) material[i] = scene->wall[i].material;
+    buffer_reserve(dev, &w->primitive, 12 * n * preal);
+    buffer_reserve(dev, &w->bounds, 6 * n * preal);
+    buffer_reserve(dev, &w->features_of, 6 * n * sizeof(cl_int));
+    buffer_reserve(dev, &w->wall_of, n * sizeof(cl_int));
+    buffer_reserve(dev, &w->material, n_wall * sizeof(cl_int));
+    buffer_reserve(dev, &w->room, n_wall * preal);
+    buffer_reserve(dev, &w->pose, n_wall * POSE_WIDTH * preal);
+    buffer_reserve(dev, &w->batch, WALL_BATCH * n_wall * POSE_WIDTH * preal);
+    particles_write(dev, &w->primitive, is_float, 0, 12 * n, walls->primitive);
+    particles_write(dev, &w->bounds, is_float, 0, 6 * n, bounds);
+    buffer_write(dev, &w->features_of, 0, 6 * n * sizeof(cl_int), walls->features);
+    buffer_write(dev, &w->wall_of, 0, n * sizeof(cl_int), walls->wall_of);
+    buffer_write(dev, &w->material, 0, n_wall * sizeof(cl_int), material);
+    free(bounds);
+    free(material);
+}
+
+struct wall_contacts *wall_contacts_create(struct device *dev, const struct comm *comm, const struct features *features, const struct scene *scene,
+    const struct walls *walls, double dt, const struct program *lists, const struct program *force)
+{
+    struct wall_contacts *w = fail_alloc(sizeof *w);
+    w->features = features;
+    w->walls = walls;
+    w->comm = comm;
+    w->dt = dt;
+    w->layout = contact_layout(dev, force);
+    init_buffers(dev, w);
+    upload_walls(dev, w, scene);
+    w->poses = fail_alloc(WALL_BATCH * (size_t)walls->n_wall * sizeof *w->poses);
+    w->built = fail_alloc((size_t)walls->n_wall * sizeof *w->built);
+    w->room_host = fail_alloc((size_t)walls->n_wall * sizeof *w->room_host);
+    w->batch_first = INT64_MIN / 2;
+    w->rows = launch_create(lists, "wall_rows");
+    w->carry = launch_create(lists, "wall_carry");
+    w->leave = launch_create(lists, "wall_leave");
+    w->copy = launch_create(lists, "pose_copy");
+    w->keep_launch = features->triangle ? launch_create(force, "wall_keep") : NULL;
+    launch_bind_buffer(w->copy, "batch", &w->batch);
+    launch_bind_buffer(w->copy, "pose", &w->pose);
+    launch_set_int(w->copy, "n", walls->n_wall * POSE_WIDTH);
+    return w;
+}
+
+void wall_contacts_free(struct device *dev, struct wall_contacts *w)
+{
+    if (!w) return;
+    struct buffer *own[OWN_BUFFERS], *list[LIST_BUFFERS];
+    struct wall_list *lists[] = {&w->now, &w->old};
+    own_buffers(w, own);
+    for (int i = 0; i < OWN_BUFFERS; i++) buffer_free(dev, own[i]);
+    for (int k = 0; k < 2; k++) {
+        list_buffers(lists[k], list);
+        for (int i = 0; i < LIST_BUFFERS; i++) buffer_free(dev, list[i]);
+    }
+    contact_arrivals_free(dev, &w->arrivals);
+    struct launch *launch[] = {w->rows, w->carry, w->leave, w->copy, w->keep_launch};
+    for (int i = 0; i < 5; i++) launch_free(launch[i]);
+    free(w->poses);
+    free(w->built);
+    free(w->room_host);
+    free(w);
+}
+
+/* The batch that has the step. Batches begin at the same steps whenever the run itself began. */
+static void new_batch(struct device *dev, struct wall_contacts *w, int64_t step, bool upload)
+{
+    int64_t first = step / WALL_BATCH * WALL_BATCH;
+    size_t n = WALL_BATCH * (size_t)w->walls->n_wall;
+    double *row = fail_alloc(n * POSE_WIDTH * sizeof *row);
+    if (w->comm->rank == 0) walls_poses(w->walls, w->dt, first, WALL_BATCH, w->poses);
+    comm_bcast(w->comm, w->poses, n * sizeof *w->poses, 0);
+    w->batch_first = first;
+    if (!upload) {
+        free(row);
+        return;
+    }
+    for (size_t i = 0; i < n; i++) {
+        const struct wall_pose *p = &w->poses[i];
+        double *r = row + i * POSE_WIDTH;
+        memcpy(r, p->rotation, sizeof p->rotation);
+        memcpy(r + 9, p->translation, sizeof p->translation);
+        memcpy(r + 12, p->velocity, sizeof p->velocity);
+        memcpy(r + 15, p->spin, sizeof p->spin);
+        memcpy(r + 18, p->centre, sizeof p->centre);
+        r[21] = p->active;
+    }
+    particles_write(dev, &w->batch, w->features->position_is_float, 0, n * POSE_WIDTH, row);
+    free(row);
+}
+
+void wall_contacts_set_step(struct device *dev, struct wall_contacts *w, int64_t step)
+{
+    bool first = w->batch_first < 0, varies = w->features->moving || w->features->timed;
+    if (!first && !varies) return;
+    if (first || step >= w->batch_first + WALL_BATCH) new_batch(dev, w, step, first || w->features->moving);
+    if (!first && !w->features->moving) return;
+    launch_set_int(w->copy, "first", (int)(step - w->batch_first) * w->walls->n_wall * POSE_WIDTH);
+    launch_run(w->copy, dev->compute, (int64_t)w->walls->n_wall * POSE_WIDTH, 0, NULL, NULL);
+}
+
+const struct wall_pose *wall_contacts_pose(const struct wall_contacts *w, int64_t step)
+{
+    int64_t k = step - w->batch_first;
+    return w->poses + (k < 0 ? 0 : k >= WALL_BATCH ? WALL_BATCH - 1 : k) * w->walls->n_wall;
+}
+
+/* Walls in motion get room for horizon_steps at their present speed; what is not there yet is listed when it appears; what is gone is left out. */
+static void set_room(struct device *dev, struct wall_contacts *w, int64_t step, int horizon_steps, const double low[3], const double high[3])
+{
+    const struct wall_pose *now = wall_contacts_pose(w, step);
+    int64_t later = step - w->batch_first + 1;
+    const struct wall_pose *next = w->poses + (later < WALL_BATCH ? later : WALL_BATCH - 1) * w->walls->n_wall;
+    memcpy(w->built, now, (size_t)w->walls->n_wall * sizeof *now);
+    for (int k = 0; k < w->walls->n_wall; k++) {
+        w->room_host[k] = now[k].active ? 0 : -1;
+        if (now[k].active && w->walls->moves[k]) {
+            double per_step = later < WALL_BATCH ? walls_displacement(w->walls, k, &now[k], &next[k], low, high) : 0;
+            double speed = walls_displacement(w->walls, k, &now[k], &w->poses[(WALL_BATCH - 1) * (size_t)w->walls->n_wall + (size_t)k], low, high);
+            double left = (double)(WALL_BATCH - (step - w->batch_first));
+            w->room_host[k] = horizon_steps * fmax(per_step, speed / fmax(left, 1));
+        }
+    }
+    particles_write(dev, &w->room, w->features->position_is_float, 0, (size_t)w->walls->n_wall, w->room_host);
+}
+
+static void reserve_contacts(struct device *dev, struct wall_contacts *w)
+{
+    struct wall_list *l = &w->now;
+    size_t real = particles_real(w->features), capacity = (size_t)l->capacity;
+    buffer_reserve(dev, &l->candidate, capacity * sizeof(cl_int));
+    buffer_reserve(dev, &l->element, capacity * sizeof(cl_int));
+    buffer_reserve(dev, &w->keep, capacity * sizeof(cl_int));
+    buffer_reserve(dev, &w->result, capacity * 8 * real);
+    if (w->layout.remembers) {
+        buffer_reserve(dev, &l->state, capacity * sizeof(cl_int));
+        buffer_reserve(dev, &l->history, capacity * (size_t)w->layout.history * real);
+        buffer_zero(dev, &l->state);
+        buffer_zero(dev, &l->history);
+    }
+    if (w->features->energy) {
+        buffer_reserve(dev, &w->ledger, capacity * CONTACT_LEDGER_WIDTH * sizeof(cl_double));
+        buffer_zero(dev, &w->ledger);
+    }
+}
+
+void wall_contacts_build(struct device *dev, struct wall_contacts *w, struct scan *scan, const struct particles *p, int64_t step, int horizon_steps,
+    const double low[3], const double high[3])
+{
+    struct wall_list older = w->old, *l = &w->now;
+    w->old = w->now;
+    w->now = older;
+    l->n_owned = p->n_owned;
+    set_room(dev, w, step, horizon_steps, low, high);
+    buffer_reserve(dev, &l->begin, ((size_t)l->n_owned + 1) * sizeof(cl_int));
+    launch_set_int(w->rows, "n_owned", (int)l->n_owned);
+    launch_set_int(w->rows, "n_primitive", w->walls->n_primitive);
+    const struct {
+        const char *name;
+        const struct buffer *buffer;
+    } bind[] = {{"position", &p->field[FIELD_STATE].now}, {"reach", &p->reach}, {"primitive", &w->primitive}, {"bounds", &w->bounds},
+        {"wall_of", &w->wall_of}, {"pose", &w->pose}, {"room", &w->room}, {"begin", &l->begin}, {"candidate", &l->candidate},
+        {"candidate_element", &l->element}};
+    for (size_t i = 0; i < sizeof bind / sizeof *bind; i++) launch_bind_buffer(w->rows, bind[i].name, bind[i].buffer);
+    launch_set_int(w->rows, "fill", 0);
+    launch_run(w->rows, dev->compute, l->n_owned, 0, NULL, NULL);
+    l->n = scan_total(dev, scan, &l->begin, l->n_owned);
+    l->capacity = (l->n + 63) / 64 * 64 + 16;
+    reserve_contacts(dev, w);
+    launch_set_int(w->rows, "fill", 1);
+    launch_run(w->rows, dev->compute, l->n_owned, 0, NULL, NULL);
+}
+
+void wall_contacts_carry(struct device *dev, struct wall_contacts *w, const struct buffer *old_index)
+{
+    struct wall_list *l = &w->now, *o = &w->old;
+    struct launch *k = w->carry;
+    if (!w->layout.remembers) return;
+    launch_set_int(k, "n_owned", (int)l->n_owned);
+    launch_set_int(k, "n_old", (int)o->n_owned);
+    launch_set_int(k, "width", w->layout.history);
+    launch_set_int(k, "capacity", (int)l->capacity);
+    launch_set_int(k, "old_capacity", (int)o->capacity);
+    launch_set_int(k, "arrival_capacity", (int)w->arrivals.n_contact);
+    const struct {
+        const char *name;
+        const struct buffer *buffer;
+    } bind[] = {{"begin", &l->begin}, {"candidate", &l->candidate}, {"old_index", old_index}, {"old_begin", &o->begin},
+        {"old_candidate", &o->candidate}, {"arrival_begin", &w->arrivals.begin}, {"arrival_candidate", &w->arrivals.key},
+        {"arrival_state", &w->arrivals.state}, {"arrival_history", &w->arrivals.history}, {"old_state", &o->state}, {"old_history", &o->history},
+        {"state", &l->state}, {"history", &l->history}};
+    for (size_t i = 0; i < sizeof bind / sizeof *bind; i++) launch_bind_buffer(k, bind[i].name, bind[i].buffer);
+    launch_run(k, dev->compute, l->n_owned, 0, NULL, NULL);
+}
+
+bool wall_contacts_stale(const struct wall_contacts *w, int64_t step, const double low[3], const double high[3])
+{
+    if (!w->features->moving && !w->features->timed) return false;
+    const struct wall_pose *now = wall_contacts_pose(w, step);
+    for (int k = 0; k < w->walls->n_wall; k++) {
+        if (now[k].active != (w->room_host[k] >= 0)) return true;
+        if (now[k].active && w->walls->moves[k] && walls_displacement(w->walls, k, &w->built[k], &now[k], low, high) > w->room_host[k]) return true;
+    }
+    return false;
+}
+
+void wall_contacts_select(struct device *dev, struct wall_contacts *w, const struct particles *p)
+{
+    struct wall_list *l = &w->now;
+    struct launch *k = w->keep_launch;
+    launch_set_int(k, "n_owned", (int)l->n_owned);
+    const struct {
+        const char *name;
+        const struct buffer *buffer;
+    } bind[] = {{"position", &p->field[FIELD_STATE].now}, {"begin", &l->begin}, {"candidate", &l->candidate}, {"primitive", &w->primitive},
+        {"features", &w->features_of}, {"wall_of", &w->wall_of}, {"pose", &w->pose}, {"keep", &w->keep}};
+    for (size_t i = 0; i < sizeof bind / sizeof *bind; i++) launch_bind_buffer(k, bind[i].name, bind[i].buffer);
+    launch_bind_buffer_if(k, "state", &l->state);
+    launch_bind_buffer_if(k, "history", &l->history);
+    launch_set_int_if(k, "capacity", (int)l->capacity);
+    launch_run(k, dev->compute, l->n_owned, 0, NULL, NULL);
+}

@@ -1,0 +1,213 @@
+#include "log.h"
+#include "comm/fail.h"
+#include "base/timer.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* Seconds between progress lines: on a terminal for the eye, in a file for whoever looks in now and then. */
+static const double every_terminal = 0.2, every_file = 30.0;
+
+struct log {
+    bool speaks, quiet; /* speaks: rank 0 */
+    bool is_terminal;
+    FILE *file;                           /* log.txt, NULL before log_attach */
+    char *path, *early;                   /* early: text before log_attach */
+    int line_width;                       /* of the progress line now on the terminal; 0: none */
+    bool is_begun;                        /* progress */
+    double begun, last;                   /* [s] clock at the first call, and when a line was last shown */
+    int64_t step_begun, step_last, tenth; /* tenth: of the run, already announced */
+    double rate;                          /* [steps/s], smoothed; 0: not known yet */
+};
+
+/* Open MPI gives each rank a pseudo-terminal, wherever its own output goes: under mpirun that of mpirun (our parent, on its node) decides. */
+static bool is_terminal(void)
+{
+    if (!isatty(STDOUT_FILENO)) return false;
+    if (!getenv("OMPI_COMM_WORLD_RANK")) return true;
+    char path[64];
+    snprintf(path, sizeof path, "/proc/%ld/fd/1", (long)getppid());
+    int fd = open(path, O_WRONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    bool yes = fd >= 0 && isatty(fd);
+    if (fd >= 0) close(fd);
+    return yes;
+}
+
+struct log *log_create(const struct comm *comm, bool quiet)
+{
+    struct log *log = fail_alloc(sizeof *log);
+    log->speaks = comm->rank == 0;
+    log->quiet = quiet;
+    log->is_terminal = log->speaks && is_terminal();
+    return log;
+}
+
+static void to_file(struct log *log, const char *text)
+{
+    if (log->file) {
+        if (fputs(text, log->file) == EOF || fflush(log->file)) fail_stop(EXIT_IO, "cannot write '%s': %s", log->path, strerror(errno));
+        return;
+    }
+    char *longer = fail_format("%s%s", log->early ? log->early : "", text);
+    free(log->early);
+    log->early = longer;
+}
+
+void log_attach(struct log *log, const char *dir, bool append)
+{
+    if (!log->speaks) return;
+    log->path = fail_format("%s/log.txt", dir);
+    log->file = fopen(log->path, append ? "ae" : "we");
+    if (!log->file) fail_stop(EXIT_IO, "cannot create '%s': %s", log->path, strerror(errno));
+    if (log->early) to_file(log, log->early);
+    free(log->early);
+    log->early = NULL;
+}
+
+void log_free(struct log *log)
+{
+    if (!log) return;
+    if (log->file && fclose(log->file)) fail_stop(EXIT_IO, "cannot write '%s': %s", log->path, strerror(errno));
+    free(log->path);
+    free(log->early);
+    free(log);
+}
+
+/* Ordinary output never runs into the progress line: that one is wiped first. */
+static void wipe(struct log *log)
+{
+    if (log->line_width == 0) return;
+    printf("\r%*s\r", log->line_width, "");
+    log->line_width = 0;
+}
+
+static char *text_of(const char *format, va_list args)
+{
+    va_list again;
+    va_copy(again, args);
+    size_t n = (size_t)vsnprintf(NULL, 0, format, again) + 1;
+    va_end(again);
+    char *text = fail_alloc(n);
+    vsnprintf(text, n, format, args);
+    return text;
+}
+
+void log_print(struct log *log, const char *format, ...)
+{
+    if (!log->speaks) return;
+    va_list args;
+    va_start(args, format);
+    char *text = text_of(format, args), *line = fail_format("%s\n", text);
+    va_end(args);
+    if (!log->quiet) {
+        wipe(log);
+        fputs(line, stdout);
+        fflush(stdout);
+    }
+    to_file(log, line);
+    free(line);
+    free(text);
+}
+
+void log_warn(struct log *log, const char *format, ...)
+{
+    if (!log->speaks) return;
+    va_list args;
+    va_start(args, format);
+    char *text = text_of(format, args), *line = fail_format("warning: %s\n", text);
+    va_end(args);
+    wipe(log);
+    fflush(stdout);
+    fail_warn("%s", text);
+    to_file(log, line);
+    free(line);
+    free(text);
+}
+
+char *log_duration(double seconds, char text[LOG_DURATION_SIZE])
+{
+    if (!(seconds >= 0 && seconds < 1e10)) return strcpy(text, "?");
+    long s = lround(seconds);
+    if (seconds < 9.95) snprintf(text, LOG_DURATION_SIZE, "%.1f s", seconds);
+    else if (s < 60) snprintf(text, LOG_DURATION_SIZE, "%ld s", s);
+    else if (s < 3600) snprintf(text, LOG_DURATION_SIZE, "%ld min %02ld s", s / 60, s % 60);
+    else snprintf(text, LOG_DURATION_SIZE, "%ld h %02ld min", s / 3600, s % 3600 / 60);
+    return text;
+}
+
+static void begin(struct log *log, const struct log_progress *p, double now)
+{
+    log->is_begun = true;
+    log->begun = log->last = now;
+    log->step_begun = log->step_last = p->step;
+    log->tenth = p->n_step > 0 ? 10 * p->step / p->n_step : 0;
+}
+
+/* Rate since the last line, smoothed, so that the time left does not jump at every rebuild of the lists. */
+static void take_rate(struct log *log, const struct log_progress *p, double now)
+{
+    if (now <= log->last || p->step == log->step_last) return;
+    double rate = (double)(p->step - log->step_last) / (now - log->last);
+    double weight = fmax(0.2, (now - log->last) / (now - log->begun)); /* the younger the run, the more the last piece counts */
+    log->rate = log->rate > 0 ? (1 - weight) * log->rate + weight * rate : rate;
+}
+
+static char *progress_text(const struct log *log, const struct log_progress *p, double now, bool is_end)
+{
+    char duration[LOG_DURATION_SIZE];
+    double rate = is_end && now > log->begun ? (double)(p->step - log->step_begun) / (now - log->begun) : log->rate;
+    double share = p->n_step > 0 ? 100.0 * (double)p->step / (double)p->n_step : 100.0;
+    log_duration(is_end ? now - log->begun : (double)(p->n_step - p->step) / rate, duration);
+    double element_steps = rate * (double)p->n_element;
+    bool is_fast = element_steps >= 1e6;
+    return fail_format("step %lld of %lld (%.0f %%)  t = %.5g of %.5g s  %.3g %selement-steps/s  %s %s", (long long)p->step, (long long)p->n_step,
+        floor(share), p->time, p->end, is_fast ? 1e-6 * element_steps : element_steps, is_fast ? "million " : "", duration,
+        is_end ? "in all" : "left");
+}
+
+void log_progress(struct log *log, const struct log_progress *p)
+{
+    if (!log->speaks) return;
+    double now = timer_now();
+    if (!log->is_begun) begin(log, p, now);
+    int64_t tenth = p->n_step > 0 ? 10 * p->step / p->n_step : 0;
+    bool show_terminal = log->is_terminal && !log->quiet && now - log->last >= every_terminal;
+    bool is_mark = tenth > log->tenth && p->step < p->n_step; /* the end is log_progress_end's */
+    bool show_line = is_mark || (!log->is_terminal && now - log->last >= every_file);
+    if (!show_terminal && !show_line) return;
+    take_rate(log, p, now);
+    char *text = progress_text(log, p, now, false);
+    if (log->is_terminal && !log->quiet) {
+        int width = printf("\r%s", text) - 1;
+        if (width < log->line_width) printf("%*s", log->line_width - width, ""); /* the rest of a longer line before */
+        log->line_width = width;
+        fflush(stdout);
+        if (show_line) {
+            char *line = fail_format("%s\n", text);
+            to_file(log, line);
+            free(line);
+        }
+    } else {
+        log_print(log, "%s", text);
+    }
+    free(text);
+    log->last = now;
+    log->step_last = p->step;
+    log->tenth = tenth;
+}
+
+void log_progress_end(struct log *log, const struct log_progress *p)
+{
+    if (!log->speaks) return;
+    double now = timer_now();
+    if (!log->is_begun) begin(log, p, now);
+    char *text = progress_text(log, p, now, true);
+    log_print(log, "%s", text);
+    free(text);
+}

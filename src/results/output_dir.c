@@ -1,0 +1,282 @@
+#include "output_dir.h"
+#include "comm/fail.h"
+#include "base/files.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <fnmatch.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <yaml.h>
+
+/* What rank 0 found, for all: an exit code (0: fine) and its message. */
+struct outcome {
+    int code;
+    char text[FILES_ERROR_SIZE];
+};
+
+static bool fail_with(struct outcome *outcome, int code, const char *what, const char *path)
+{
+    outcome->code = code;
+    snprintf(outcome->text, sizeof outcome->text, "cannot %s '%s': %s", what, path, strerror(errno));
+    return false;
+}
+
+static bool make_folders(const char *dir, struct outcome *outcome)
+{
+    char *path = fail_strdup(dir);
+    bool ok = true;
+    for (char *c = path + 1; ok; c++) {
+        if (*c != '/' && *c != '\0') continue;
+        char kept = *c;
+        *c = '\0';
+        if (mkdir(path, 0777) && errno != EEXIST) ok = fail_with(outcome, EXIT_IO, "create the folder", path);
+        *c = kept;
+        if (kept == '\0') break;
+    }
+    free(path);
+    struct stat status;
+    if (ok && stat(dir, &status)) ok = fail_with(outcome, EXIT_IO, "open", dir);
+    if (ok && !S_ISDIR(status.st_mode)) {
+        errno = ENOTDIR;
+        ok = fail_with(outcome, EXIT_IO, "write results into", dir);
+    }
+    if (ok && access(dir, W_OK | X_OK)) ok = fail_with(outcome, EXIT_IO, "write into", dir);
+    return ok;
+}
+
+/* Held until the process ends, however it ends. A file system that knows no locks does without. */
+static bool lock(const char *dir, struct outcome *outcome)
+{
+    int fd = open(dir, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (fd < 0) return fail_with(outcome, EXIT_IO, "open the folder", dir);
+    if (flock(fd, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return true;
+    close(fd);
+    outcome->code = EXIT_USAGE;
+    snprintf(outcome->text, sizeof outcome->text, "another run is still writing into '%s'%s", dir,
+        output_dir_stop_asked(dir) ? "; it has been asked to stop" : "");
+    return false;
+}
+
+static bool is_result(const char *name)
+{
+    return !fnmatch("frame_[0-9]*.hdf", name, 0) || !strcmp(name, "run.json");
+}
+
+/* Names of files that every run makes, whatever its scene. */
+static bool is_ours(const char *name)
+{
+    const char *const fixed[] = {"log.txt", "scene.yaml", "resolved.yaml", "run.balance.csv", "trace.json", "stop", "run.json.tmp", "scene.yaml.tmp",
+        "resolved.yaml.tmp", "trace.json.tmp"};
+    if (is_result(name) || !fnmatch("frame_[0-9]*.hdf.tmp", name, 0)) return true;
+    for (size_t k = 0; k < sizeof fixed / sizeof *fixed; k++) {
+        if (!strcmp(name, fixed[k])) return true;
+    }
+    return false;
+}
+
+static bool holds_results(const char *dir)
+{
+    DIR *folder = opendir(dir);
+    bool found = false;
+    for (struct dirent *entry; folder && (entry = readdir(folder));) found |= is_result(entry->d_name);
+    if (folder) closedir(folder);
+    return found;
+}
+
+static void remove_series(const char *dir, const char *measure)
+{
+    if (strchr(measure, '/')) return; /* never outside of dir */
+    char *path = fail_format("%s/%s.csv", dir, measure);
+    unlink(path);
+    free(path);
+}
+
+static yaml_node_t *value_of(yaml_document_t *document, yaml_node_t *map, const char *key)
+{
+    if (!map || map->type != YAML_MAPPING_NODE) return NULL;
+    for (yaml_node_pair_t *pair = map->data.mapping.pairs.start; pair < map->data.mapping.pairs.top; pair++) {
+        yaml_node_t *name = yaml_document_get_node(document, pair->key);
+        if (name && name->type == YAML_SCALAR_NODE && !strcmp((const char *)name->data.scalar.value, key)) {
+            return yaml_document_get_node(document, pair->value);
+        }
+    }
+    return NULL;
+}
+
+/* The run before may have had other measures: their names stand in the scene that it left. What cannot be read names none. */
+static void remove_old_series(const char *dir)
+{
+    char error[FILES_ERROR_SIZE], *path = fail_format("%s/resolved.yaml", dir);
+    size_t n;
+    char *text = files_read(path, &n, error);
+    free(path);
+    if (!text) return;
+    yaml_parser_t parser;
+    yaml_document_t document;
+    if (!yaml_parser_initialize(&parser)) fail_stop(EXIT_IO, "out of memory");
+    yaml_parser_set_input_string(&parser, (const unsigned char *)text, n);
+    if (yaml_parser_load(&parser, &document)) {
+        yaml_node_t *list = value_of(&document, yaml_document_get_root_node(&document), "measure");
+        bool is_list = list && list->type == YAML_SEQUENCE_NODE;
+        for (yaml_node_item_t *item = is_list ? list->data.sequence.items.start : NULL; item && item < list->data.sequence.items.top; item++) {
+            yaml_node_t *name = value_of(&document, yaml_document_get_node(&document, *item), "name");
+            if (name && name->type == YAML_SCALAR_NODE) remove_series(dir, (const char *)name->data.scalar.value);
+        }
+        yaml_document_delete(&document);
+    }
+    yaml_parser_delete(&parser);
+    free(text);
+}
+
+static bool exists(const char *dir, const char *name)
+{
+    char *path = fail_format("%s/%s", dir, name);
+    bool found = access(path, F_OK) == 0;
+    free(path);
+    return found;
+}
+
+static bool remove_file(const char *dir, const char *name, struct outcome *outcome)
+{
+    char *path = fail_format("%s/%s", dir, name);
+    bool ok = unlink(path) == 0 || fail_with(outcome, EXIT_IO, "remove", path);
+    free(path);
+    return ok;
+}
+
+static bool remove_ours(const char *dir, struct outcome *outcome)
+{
+    DIR *folder = opendir(dir);
+    if (!folder) return fail_with(outcome, EXIT_IO, "read the folder", dir);
+    bool ok = true;
+    for (struct dirent *entry; (entry = readdir(folder));) {
+        if (is_ours(entry->d_name)) ok = remove_file(dir, entry->d_name, outcome) && ok;
+    }
+    closedir(folder);
+    return ok;
+}
+
+static bool put_file(const char *dir, const char *name, const char *text, size_t n, struct outcome *outcome)
+{
+    char *path = fail_format("%s/%s", dir, name);
+    bool ok = files_replace(path, text, n, outcome->text);
+    if (!ok) outcome->code = EXIT_IO;
+    free(path);
+    return ok;
+}
+
+/* A scene.yaml of the user's own, other than the scene of this run, that our copy would overwrite. */
+static bool has_other_scene(const char *dir, const char *scene, size_t n_scene)
+{
+    char error[FILES_ERROR_SIZE], *path = fail_format("%s/scene.yaml", dir);
+    size_t n = 0;
+    char *text = files_read(path, &n, error);
+    bool differs = text && (n != n_scene || memcmp(text, scene, n));
+    free(text);
+    free(path);
+    return differs;
+}
+
+/* A CSV of the user's own, perhaps what the scene reads, that a series would overwrite; NULL: none. */
+static const char *other_series(const struct output_request *request)
+{
+    const char *found = NULL;
+    for (int k = 0; k < request->n_measure && !found; k++) {
+        char *name = fail_format("%s.csv", request->measure[k]);
+        if (exists(request->dir, name)) found = request->measure[k];
+        free(name);
+    }
+    return found;
+}
+
+/* What DIR holds that this run would destroy, or "". */
+static void find_others(const struct output_request *request, const char *scene, size_t n_scene, bool is_ours_already, char *what, size_t room)
+{
+    const char *series = other_series(request);
+    what[0] = '\0';
+    if (holds_results(request->dir)) snprintf(what, room, "results already");
+    else if (!is_ours_already && has_other_scene(request->dir, scene, n_scene)) snprintf(what, room, "another scene.yaml");
+    else if (!is_ours_already && series) snprintf(what, room, "a file %s.csv, the name of a measure", series);
+}
+
+static void create(const struct output_request *request, const char *scene, size_t n_scene, struct outcome *outcome)
+{
+    const char *dir = request->dir;
+    if (!make_folders(dir, outcome) || !lock(dir, outcome)) return;
+    bool is_ours_already = holds_results(dir) || exists(dir, "resolved.yaml"); /* the latter: a run that was killed before its first frame */
+    char why[300];
+    find_others(request, scene, n_scene, is_ours_already, why, sizeof why);
+    if (why[0] && !request->force) {
+        outcome->code = EXIT_USAGE;
+        snprintf(outcome->text, sizeof outcome->text, "'%s' holds %s; --force replaces, -o DIR writes elsewhere", dir, why);
+        return;
+    }
+    if (is_ours_already) {
+        remove_old_series(dir);
+        for (int k = 0; k < request->n_measure; k++) remove_series(dir, request->measure[k]);
+        if (!remove_ours(dir, outcome)) return;
+    }
+    if (exists(dir, "stop") && !remove_file(dir, "stop", outcome)) return; /* else this run would end at once */
+    if (put_file(dir, "scene.yaml", scene, n_scene, outcome)) put_file(dir, "resolved.yaml", request->resolved, strlen(request->resolved), outcome);
+}
+
+void output_dir_create(const struct comm *comm, const struct output_request *request)
+{
+    signal(SIGXFSZ, SIG_IGN); /* a limit on file sizes shall come back as an error of write, with a message, not kill the run */
+    struct outcome outcome = {0, ""};
+    if (comm->rank == 0) {
+        size_t n = 0;
+        char *scene = files_read(request->scene_path, &n, outcome.text); /* first: it may lie in the very folder that is emptied */
+        if (scene) create(request, scene, n, &outcome);
+        else outcome.code = EXIT_IO;
+        free(scene);
+    }
+    comm_bcast(comm, &outcome, sizeof outcome, 0);
+    if (outcome.code) fail_stop_together(outcome.code, "%s", outcome.text);
+}
+
+/* Whether a run that goes on from frame `index` leaves this file behind. */
+static bool is_over(const char *name, int64_t index)
+{
+    long long number;
+    if (!strcmp(name, "run.json") || !strcmp(name, "stop")) return true;
+    if (fnmatch("frame_[0-9]*.hdf", name, 0) && fnmatch("frame_[0-9]*.hdf.tmp", name, 0)) return false;
+    return sscanf(name, "frame_%lld", &number) == 1 && number > index;
+}
+
+static void take_up(const struct output_request *request, int64_t index, struct outcome *outcome)
+{
+    const char *dir = request->dir;
+    if (access(dir, W_OK | X_OK)) {
+        fail_with(outcome, EXIT_IO, "write into", dir);
+        return;
+    }
+    if (!lock(dir, outcome)) return;
+    DIR *folder = opendir(dir);
+    bool ok = folder || fail_with(outcome, EXIT_IO, "read the folder", dir);
+    for (struct dirent *entry; folder && (entry = readdir(folder));)
+        if (is_over(entry->d_name, index)) ok = remove_file(dir, entry->d_name, outcome) && ok;
+    if (folder) closedir(folder);
+    if (ok) put_file(dir, "resolved.yaml", request->resolved, strlen(request->resolved), outcome);
+}
+
+void output_dir_resume(const struct comm *comm, const struct output_request *request, int64_t index)
+{
+    signal(SIGXFSZ, SIG_IGN);
+    struct outcome outcome = {0, ""};
+    if (comm->rank == 0) take_up(request, index, &outcome);
+    comm_bcast(comm, &outcome, sizeof outcome, 0);
+    if (outcome.code) fail_stop_together(outcome.code, "%s", outcome.text);
+}
+
+bool output_dir_stop_asked(const char *dir)
+{
+    return exists(dir, "stop");
+}

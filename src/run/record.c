@@ -1,0 +1,159 @@
+#include "record.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "results/digest.h"
+#include "comm/fail.h"
+#include "laws/lattice_schemes.h"
+#include "results/report.h"
+#include "resume.h"
+#include "version.h"
+
+static void add_devices(struct report *r, const struct sim *s)
+{
+    struct {
+        char name[DEVICE_TEXT], driver[DEVICE_TEXT], platform[DEVICE_TEXT];
+    } mine, *all;
+    all = fail_alloc((size_t)s->comm->n_rank * sizeof *all);
+    memset(&mine, 0, sizeof mine);
+    memcpy(mine.name, s->dev->name, DEVICE_TEXT);
+    memcpy(mine.driver, s->dev->driver, DEVICE_TEXT);
+    memcpy(mine.platform, s->dev->platform_version, DEVICE_TEXT);
+    comm_gather(s->comm, &mine, all, sizeof mine);
+    report_begin_list(r, "devices");
+    for (int k = 0; k < s->comm->n_rank; k++) {
+        report_begin(r, NULL);
+        report_text(r, "name", all[k].name);
+        report_text(r, "driver", all[k].driver);
+        report_text(r, "platform_version", all[k].platform);
+        report_end(r);
+    }
+    report_end(r);
+    free(all);
+}
+
+static void add_scale(struct report *r, struct sim *s)
+{
+    double loop = s->timers.total[TIMER_LOOP];
+    struct step_counts mine;
+    s->ops->count(s, &mine);
+    mine.sent.bytes -= s->sent_before.bytes;
+    mine.sent.messages -= s->sent_before.messages;
+    int64_t sum[3] = {mine.n_interaction, mine.sent.bytes, s->dev->counters.peak_bytes};
+    comm_sum_i64(s->comm, sum, 3);
+    report_integer(r, "elements", s->n_first);
+    report_integer(r, "elements_left", s->n_removed);
+    report_integer(r, "interactions", sum[0]);
+    report_integer(r, "steps", s->step);
+    report_number(r, "dt", s->dt);
+    report_number(r, "dt_limit", s->dt_limit);
+    report_number(r, "time_end", (double)s->step * s->dt);
+    report_begin(r, "wall_s");
+    report_number(r, "setup", s->timers.total[TIMER_SETUP]);
+    report_number(r, "loop", loop);
+    report_number(r, "output", s->timers.total[TIMER_OUTPUT]);
+    report_end(r);
+    report_number(r, "element_steps_per_s", loop > 0 ? s->element_steps / loop : 0);
+    report_timers(r, "timers", s->comm, &s->timers);
+    report_integer(r, "rebuilds", s->n_rebuild);
+    const struct partition_quality *q = &s->balance->quality;
+    report_integer(r, "repartitions", s->balance->n_deal);
+    report_integer(r, "migrations", s->balance->n_moved);
+    report_begin(r, "imbalance");
+    report_number(r, "mean", q->n > 0 ? q->imbalance_sum / (double)q->n : 0);
+    report_number(r, "max", q->imbalance_max);
+    report_end(r);
+    double n = s->step > s->begun_at ? (double)(s->step - s->begun_at) : 1;
+    report_number(r, "halo_bytes_per_step", (double)sum[1] / n);
+    report_begin(r, "exchange"); /* of each rank; bytes and messages that it sends per step */
+    report_spread(r, "bytes", s->comm, (double)mine.sent.bytes / n);
+    report_spread(r, "messages", s->comm, (double)mine.sent.messages / n);
+    report_spread(r, "neighbours", s->comm, mine.n_neighbour);
+    report_spread(r, "elements", s->comm, (double)mine.n_boundary);
+    report_end(r);
+    report_number(r, "device_bytes_per_element", (double)sum[2] / (double)(s->n_first > 0 ? s->n_first : 1));
+}
+
+/* Copies and allocations in plain steps (sim.h), sums over ranks: what shows that the state stays on the device. */
+static void add_plain_steps(struct report *r, const struct sim *s)
+{
+    const struct device_counters *c = &s->plain;
+    static const char *const name[] = {"allocations", "to_device", "to_device_bytes", "from_device", "from_device_bytes", "launches"};
+    int64_t sum[6] = {c->n_alloc, c->n_h2d, c->h2d_bytes, c->n_d2h, c->d2h_bytes, c->n_launch};
+    comm_sum_i64(s->comm, sum, 6);
+    report_begin(r, "plain_steps");
+    report_integer(r, "steps", s->n_plain);
+    for (int i = 0; i < 6; i++) report_integer(r, name[i], sum[i]);
+    report_end(r);
+}
+
+/* Times, bytes and plain steps are of this process; steps, energies and counters of the run as a whole. */
+static void add_resumed(struct report *r, const struct sim *s)
+{
+    const char *slash = strrchr(s->from->path, '/');
+    report_begin(r, "resumed");
+    report_text(r, "frame", slash + 1);
+    report_integer(r, "step", s->begun_at);
+    report_number(r, "time", (double)s->begun_at * s->dt);
+    report_end(r);
+}
+
+static void add_rest(struct report *r, const struct sim *s)
+{
+    report_begin(r, "rest");
+    report_flag(r, "reached", s->rest.reached);
+    report_number(r, "left", s->rest.left);
+    report_number(r, "damping", s->rest.damping);
+    report_end(r);
+}
+
+bool record_write(struct sim *s, int exit_code, bool observed)
+{
+    char digest[17] = "";
+    static const char *const precision[] = {"double", "double", "mixed", "single"};
+    struct report *r = report_create();
+    uint64_t bits = 0;
+    bool whole = observed && s->ops->digest(s, &bits);
+    digest_text(bits, digest);
+    if (observed && !whole) exit_code = EXIT_NUMERICS;
+    report_text(r, "version", DEMOCLES_VERSION);
+    report_text(r, "git", DEMOCLES_GIT);
+    char *hash = fail_format("%016lx", s->scene->hash);
+    report_text(r, "scene_hash", hash);
+    report_text(r, "title", s->scene->title);
+    report_text(r, "method", s->ops->name);
+    report_text(r, "precision", precision[s->scene->precision]);
+    report_text(r, "scheme", lattice_schemes_table((enum lattice_scheme)s->scene->time.scheme)->name); /* particles: leapfrog */
+    report_integer(r, "ranks", s->comm->n_rank);
+    add_devices(r, s);
+    balance_report(s->balance, r, &s->timers, s->step - s->begun_at, s->ops->n_owned(s));
+    report_begin(r, "features");
+    s->ops->report_features(s, r);
+    report_end(r);
+    if (s->from) add_resumed(r, s);
+    add_scale(r, s);
+    add_plain_steps(r, s);
+    if (s->options->profile) {
+        report_begin(r, "kernels");
+        s->ops->report_kernels(s, r);
+        report_end(r);
+    }
+    if (s->rest.next > 0) add_rest(r, s);
+    s->ops->report_energy(s, r, observed);
+    report_integer(r, "exit", exit_code);
+    report_text(r, "digest", whole ? digest : NULL);
+    bool written = report_write(r, s->comm, s->options->dir);
+    if (observed) {
+        double loop = s->timers.total[TIMER_LOOP];
+        log_print(s->log, "%lld steps of %lld elements in %.2f s: %.3g million element steps per second", (long long)(s->step - s->begun_at),
+            (long long)s->n_first, loop, loop > 0 ? s->element_steps / loop * 1e-6 : 0);
+        balance_print(s->balance, s->log);
+        log_print(s->log, "digest %s", whole ? digest : "none: the state holds NaN");
+    }
+    report_free(r);
+    free(hash);
+    if (!written && exit_code == EXIT_DONE) fail_stop(EXIT_IO, "run.json could not be written");
+    return whole || !observed;
+}

@@ -1,0 +1,80 @@
+#include "scene.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "comm/fail.h"
+
+static void free_words(char **word, int n)
+{
+    for (int k = 0; k < n; k++) free(word[k]);
+    free(word);
+}
+
+static void free_bodies(struct scene *scene)
+{
+    for (int k = 0; k < scene->n_body; k++) {
+        struct body *body = &scene->body[k];
+        for (int m = 0; m < body->n_minus; m++) free(body->minus[m].stl);
+        free(body->minus);
+        free(body->crack);
+        free(body->shape.stl);
+        free(body->name);
+    }
+    for (int k = 0; k < scene->n_boundary; k++) free(scene->boundary[k].history.point);
+    free(scene->body);
+    free(scene->boundary);
+}
+
+void scene_free(struct scene *scene)
+{
+    if (!scene) return;
+    for (int k = 0; k < scene->n_material; k++) free(scene->material[k].name);
+    for (int k = 0; k < scene->n_group; k++) {
+        free(scene->group[k].name);
+        free(scene->group[k].file);
+        free(scene->group[k].region.stl);
+    }
+    for (int k = 0; k < scene->n_wall; k++) {
+        free(scene->wall[k].name);
+        free(scene->wall[k].stl);
+    }
+    for (int k = 0; k < scene->n_measure; k++) {
+        free(scene->measure[k].name);
+        free_words(scene->measure[k].field, scene->measure[k].n_field);
+    }
+    free_words(scene->output.field, scene->output.n_field);
+    free_bodies(scene);
+    free(scene->material);
+    free(scene->contact);
+    free(scene->group);
+    free(scene->wall);
+    free(scene->measure);
+    free(scene->path);
+    free(scene->name);
+    free(scene->title);
+    free(scene->resolved);
+    free(scene);
+}
+
+void scene_errors_add(struct scene_errors *errors, const char *format, ...)
+{
+    va_list args, again;
+    va_start(args, format);
+    va_copy(again, args);
+    int n = vsnprintf(NULL, 0, format, args);
+    va_end(args);
+    char *text = fail_alloc((size_t)n + 1);
+    vsnprintf(text, (size_t)n + 1, format, again);
+    va_end(again);
+    errors->text = fail_realloc(errors->text, (size_t)(errors->n + 1) * sizeof *errors->text);
+    errors->text[errors->n++] = text;
+}
+
+void scene_errors_free(struct scene_errors *errors)
+{
+    for (int k = 0; k < errors->n; k++) free(errors->text[k]);
+    free(errors->text);
+    *errors = (struct scene_errors){0};
+}
