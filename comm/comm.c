@@ -12,12 +12,14 @@
 
 /* What Open MPI has to be told before MPI_Init; a setting of the user's own wins.
  *
- * io: OMPIO of Open MPI up to 4.1.6 silently corrupts parallel HDF5 files (ompi #12718), and Debian 12 takes it by default: ROMIO instead.
- * hwloc: MPI_Init of a rank without mpirun looks for OpenCL devices by itself if hwloc's plugins are there, and pocl then starts its threads before
- * device.c has said how many.
- * mpi_yield_when_idle: a rank's OpenCL workers often share its core (mpirun binds to one), so a rank that waits has to let them run.
- * eager_limit: a message above it takes several looks of both ranks, and they look rarely while their device computes on the same cores; ghosts of
- * one neighbour are some 100 KB. (vader is the shared-memory transport of Open MPI 4, sm that of 5.) */
+ * io: OMPIO of Open MPI up to 4.1.6 silently corrupts parallel HDF5 files (ompi #12718), and Debian
+ * 12 takes it by default: ROMIO instead. hwloc: MPI_Init of a rank without mpirun looks for OpenCL
+ * devices by itself if hwloc's plugins are there, and pocl then starts its threads before device.c
+ * has said how many.
+ * mpi_yield_when_idle: a rank's OpenCL workers often share its core (mpirun binds to one), so a
+ * rank that waits has to let them run. eager_limit: a message above it takes several looks of both
+ * ranks, and they look rarely while their device computes on the same cores; ghosts of one
+ * neighbour are some 100 KB. (vader is the shared-memory transport of Open MPI 4, sm that of 5.) */
 static void environment(void)
 {
     setenv("OMPI_MCA_io", "^ompio", 0);
@@ -31,7 +33,10 @@ static void warn_of_ompio(void)
 {
     const char *io = getenv("OMPI_MCA_io");
     if (io && io[0] != '^' && strstr(io, "ompio"))
-        fail_warn("OMPI_MCA_io=%s: OMPIO of Open MPI before 4.1.7 corrupts parallel HDF5 files; unset it, or use ^ompio", io);
+        fail_warn(
+            "OMPI_MCA_io=%s: OMPIO of Open MPI before 4.1.7 corrupts parallel HDF5 files; unset "
+            "it, or use ^ompio",
+            io);
 }
 
 struct comm *comm_create(int *argc, char ***argv)
@@ -39,7 +44,10 @@ struct comm *comm_create(int *argc, char ***argv)
     int provided;
     environment();
     check_mpi(MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided));
-    if (provided < MPI_THREAD_FUNNELED) fail_stop(EXIT_IO, "this MPI cannot run with threads in the process (MPI_THREAD_FUNNELED), which OpenCL has");
+    if (provided < MPI_THREAD_FUNNELED)
+        fail_stop(EXIT_IO,
+            "this MPI cannot run with threads in the process (MPI_THREAD_FUNNELED), which OpenCL "
+            "has");
     warn_of_ompio();
 
     struct comm *comm = fail_alloc(sizeof *comm);
@@ -48,7 +56,8 @@ struct comm *comm_create(int *argc, char ***argv)
     check_mpi(MPI_Comm_dup(MPI_COMM_WORLD, &comm->world));
     check_mpi(MPI_Comm_rank(comm->world, &comm->rank));
     check_mpi(MPI_Comm_size(comm->world, &comm->n_rank));
-    check_mpi(MPI_Comm_split_type(comm->world, MPI_COMM_TYPE_SHARED, comm->rank, MPI_INFO_NULL, &comm->node));
+    check_mpi(MPI_Comm_split_type(
+        comm->world, MPI_COMM_TYPE_SHARED, comm->rank, MPI_INFO_NULL, &comm->node));
     check_mpi(MPI_Comm_rank(comm->node, &comm->node_rank));
     check_mpi(MPI_Comm_size(comm->node, &comm->n_node_rank));
     return comm;
@@ -145,7 +154,9 @@ void comm_vote_begin(const struct comm *comm, struct comm_vote *vote, int32_t va
     vote->mine = vote->all = value;
     vote->open = true;
     vote->request = MPI_REQUEST_NULL;
-    if (comm->n_rank > 1) check_mpi(MPI_Iallreduce(&vote->mine, &vote->all, 1, MPI_INT32_T, MPI_BOR, comm->world, &vote->request));
+    if (comm->n_rank > 1)
+        check_mpi(MPI_Iallreduce(
+            &vote->mine, &vote->all, 1, MPI_INT32_T, MPI_BOR, comm->world, &vote->request));
 }
 
 void comm_set_naps(struct comm *comm, bool naps)

@@ -1,5 +1,6 @@
-/* Ranks: which one this is, how many there are, who shares its node; and the few collectives that set-up needs.
- * The only part of democles, besides the rest of comm/ and the writing of frames, that calls MPI. */
+/* Ranks: which one this is, how many there are, who shares its node; and the few collectives that
+ * set-up needs. The only part of democles, besides the rest of comm/ and the writing of frames,
+ * that calls MPI. */
 #ifndef DEMOCLES_COMM_H
 #define DEMOCLES_COMM_H
 
@@ -16,11 +17,13 @@ struct comm {
     bool naps; /* comm_pause sleeps: the device computes on this thread's core */
 };
 
-/* MPI_Init (with OMPIO switched off, see comm.c) and MPI_Finalize. Collective. Once per process. Only the calling thread may use comm/ afterwards. */
+/* MPI_Init (with OMPIO switched off, see comm.c) and MPI_Finalize. Collective. Once per process.
+ * Only the calling thread may use comm/ afterwards. */
 struct comm *comm_create(int *argc, char ***argv);
 void comm_free(struct comm *comm);
 
-/* All collective; `value` arrays are reduced in place. Sums are of integers only: a sum of doubles would depend on the number of ranks. */
+/* All collective; `value` arrays are reduced in place. Sums are of integers only: a sum of doubles
+ * would depend on the number of ranks. */
 void comm_sum_i64(const struct comm *comm, int64_t *value, int n);
 void comm_max_i64(const struct comm *comm, int64_t *value, int n);
 void comm_min_i64(const struct comm *comm, int64_t *value, int n);
@@ -28,13 +31,17 @@ void comm_or_i32(const struct comm *comm, int32_t *value, int n);
 void comm_max_f64(const struct comm *comm, double *value, int n);
 void comm_min_f64(const struct comm *comm, double *value, int n);
 void comm_bcast(const struct comm *comm, void *data, size_t bytes, int root);
-void comm_gather(const struct comm *comm, const void *mine, void *all /* [n_rank][bytes], every rank gets it */, size_t bytes);
-int64_t comm_exscan_i64(const struct comm *comm, int64_t value); /* sum over lower ranks; 0 on rank 0 */
+void comm_gather(const struct comm *comm, const void *mine,
+    void *all /* [n_rank][bytes], every rank gets it */, size_t bytes);
+/* sum over lower ranks; 0 on rank 0 */
+int64_t comm_exscan_i64(const struct comm *comm, int64_t value);
 void comm_barrier(const struct comm *comm);
 void comm_node_barrier(const struct comm *comm);
-void comm_node_or(const struct comm *comm, void *bits, size_t bytes); /* bit-or over the ranks of this node, in place */
+/* bit-or over the ranks of this node, in place */
+void comm_node_or(const struct comm *comm, void *bits, size_t bytes);
 
-/* Between two looks at whether something has arrived: sleeps for some microseconds where `naps`, else lets others run who wait for this core. */
+/* Between two looks at whether something has arrived: sleeps for some microseconds where `naps`,
+ * else lets others run who wait for this core. */
 void comm_pause(const struct comm *comm);
 /* Whether comm_pause sleeps from now on. */
 void comm_set_naps(struct comm *comm, bool naps);
@@ -45,8 +52,10 @@ struct comm_vote {
     int32_t mine, all;
     bool open;
 };
-void comm_vote_begin(const struct comm *comm, struct comm_vote *vote, int32_t value); /* collective */
-int32_t comm_vote_end(const struct comm *comm, struct comm_vote *vote);               /* waits; 0 if none was begun */
+/* collective */
+void comm_vote_begin(const struct comm *comm, struct comm_vote *vote, int32_t value);
+/* waits; 0 if none was begun */
+int32_t comm_vote_end(const struct comm *comm, struct comm_vote *vote);
 
 /* Prints `rank R: file:line: call: name of the MPI error` and stops the job, exit code 6. */
 #define check_mpi(call) comm_check((call), #call, __FILE__, __LINE__)

@@ -1,5 +1,6 @@
-/* Ends a run that cannot go on, and memory that is never NULL. Errors go to stderr once; every rank leaves together.
- * Ranks that run into the same trouble at the same time each call fail_stop: only the first message of a node counts, MPI_Abort ends the others. */
+/* Ends a run that cannot go on, and memory that is never NULL. Errors go to stderr once; every rank
+ * leaves together. Ranks that run into the same trouble at the same time each call fail_stop: only
+ * the first message of a node counts, MPI_Abort ends the others. */
 #ifndef DEMOCLES_FAIL_H
 #define DEMOCLES_FAIL_H
 
@@ -16,11 +17,15 @@ enum {
     EXIT_STOPPED = 75 /* on request, frame written */
 };
 
-/* Prints `democles: error: [rank R:] text` and stops all ranks with the exit code: MPI_Abort where MPI runs, else exit. Not collective. */
-_Noreturn void fail_stop(int exit_code, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* Prints `democles: error: [rank R:] text` and stops all ranks with the exit code: MPI_Abort where
+ * MPI runs, else exit. Not collective. */
+_Noreturn void fail_stop(int exit_code, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 
-/* The same where every rank arrives at the same conclusion with the same text: collective, rank 0 prints, all finalise MPI and exit in order. */
-_Noreturn void fail_stop_together(int exit_code, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* The same where every rank arrives at the same conclusion with the same text: collective, rank 0
+ * prints, all finalise MPI and exit in order. */
+_Noreturn void fail_stop_together(int exit_code, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 
 /* The same where all has been said: collective, no message. */
 _Noreturn void fail_leave(int exit_code);

@@ -1,11 +1,13 @@
-/* Cost of a plan: one MPI_Alltoall of 8 bytes per pair of ranks and a duplicated communicator, that is O(n_rank) memory and time per rank, once per
- * regroup (some microseconds per rank against milliseconds for the lists that are rebuilt with it). An exchange costs one message per neighbour and
- * nothing else.
+/* Cost of a plan: one MPI_Alltoall of 8 bytes per pair of ranks and a duplicated communicator, that
+ * is O(n_rank) memory and time per rank, once per regroup (some microseconds per rank against
+ * milliseconds for the lists that are rebuilt with it). An exchange costs one message per neighbour
+ * and nothing else.
  *
- * Own communicator per halo, so that messages of two halos, or of an old and a new plan, cannot meet; a tag per kind of exchange, so that a step's
- * messages and those of halo_exchange cannot either. Between two ranks there is at most one message per kind and direction at a time, so one tag
- * each is enough, also where a rank is its own neighbour. Counts are records, not bytes, by a contiguous type, so that more than 2 GiB per
- * neighbour go through MPI's int. */
+ * Own communicator per halo, so that messages of two halos, or of an old and a new plan, cannot
+ * meet; a tag per kind of exchange, so that a step's messages and those of halo_exchange cannot
+ * either. Between two ranks there is at most one message per kind and direction at a time, so one
+ * tag each is enough, also where a rank is its own neighbour. Counts are records, not bytes, by a
+ * contiguous type, so that more than 2 GiB per neighbour go through MPI's int. */
 #include "halo.h"
 
 #include <assert.h>
@@ -95,7 +97,9 @@ void halo_free(struct halo *halo)
 static int count(const int64_t *begin, int k)
 {
     int64_t n = begin[k + 1] - begin[k];
-    if (n > INT_MAX) fail_stop(EXIT_IO, "a message of %lld records: MPI takes at most %d", (long long)n, INT_MAX);
+    if (n > INT_MAX)
+        fail_stop(
+            EXIT_IO, "a message of %lld records: MPI takes at most %d", (long long)n, INT_MAX);
     return (int)n;
 }
 
@@ -117,11 +121,13 @@ void halo_exchange(struct halo *halo, const void *send, void *recv, size_t recor
 
     for (int k = 0; k < halo->n_recv; k++) {
         char *at = (char *)recv + (size_t)halo->recv_begin[k] * record;
-        check_mpi(MPI_Irecv(at, count(halo->recv_begin, k), type, halo->recv_rank[k], TAG_ONCE, in->world, &request[k]));
+        check_mpi(MPI_Irecv(at, count(halo->recv_begin, k), type, halo->recv_rank[k], TAG_ONCE,
+            in->world, &request[k]));
     }
     for (int k = 0; k < halo->n_send; k++) {
         const char *at = (const char *)send + (size_t)halo->send_begin[k] * record;
-        check_mpi(MPI_Isend(at, count(halo->send_begin, k), type, halo->send_rank[k], TAG_ONCE, in->world, &request[halo->n_recv + k]));
+        check_mpi(MPI_Isend(at, count(halo->send_begin, k), type, halo->send_rank[k], TAG_ONCE,
+            in->world, &request[halo->n_recv + k]));
     }
     check_mpi(MPI_Waitall(n, request, MPI_STATUSES_IGNORE));
     check_mpi(MPI_Type_free(&type));
@@ -136,12 +142,14 @@ void halo_bind(struct halo *halo, const void *send, void *recv, size_t record)
     halo->record = record;
     for (int k = 0; k < halo->n_recv; k++) {
         char *at = (char *)recv + (size_t)halo->recv_begin[k] * record;
-        check_mpi(MPI_Recv_init(at, count(halo->recv_begin, k), in->record, halo->recv_rank[k], TAG_STEP, in->world, &halo->request[k]));
+        check_mpi(MPI_Recv_init(at, count(halo->recv_begin, k), in->record, halo->recv_rank[k],
+            TAG_STEP, in->world, &halo->request[k]));
     }
     for (int k = 0; k < halo->n_send; k++) {
         const char *at = (const char *)send + (size_t)halo->send_begin[k] * record;
         MPI_Request *request = &halo->request[halo->n_recv + k];
-        check_mpi(MPI_Send_init(at, count(halo->send_begin, k), in->record, halo->send_rank[k], TAG_STEP, in->world, request));
+        check_mpi(MPI_Send_init(at, count(halo->send_begin, k), in->record, halo->send_rank[k],
+            TAG_STEP, in->world, request));
     }
     in->bound = true;
 }
@@ -179,9 +187,11 @@ void halo_end(struct halo *halo)
     int done = 0;
     assert(halo->n_open == 0);
     for (;;) {
-        check_mpi(MPI_Testall(halo->n_send, halo->request + halo->n_recv, &done, MPI_STATUSES_IGNORE));
+        check_mpi(
+            MPI_Testall(halo->n_send, halo->request + halo->n_recv, &done, MPI_STATUSES_IGNORE));
         if (done) break;
-        comm_pause(halo->comm); /* MPI_Waitall would spin, where the device's workers may need the core */
+        /* MPI_Waitall would spin, where the device's workers may need the core */
+        comm_pause(halo->comm);
     }
     in->sending = false;
 }

@@ -1,4 +1,5 @@
-/* Cost: one MPI_Alltoall of 8 bytes per pair of ranks to learn who sends what, then one message per pair that has something to say. */
+/* Cost: one MPI_Alltoall of 8 bytes per pair of ranks to learn who sends what, then one message per
+ * pair that has something to say. */
 #include "migrate.h"
 
 #include <assert.h>
@@ -8,7 +9,8 @@
 #include "fail.h"
 
 #ifndef MIGRATE_PIECE
-#define MIGRATE_PIECE (1LL << 30) /* [byte] largest message: MPI counts are int. A test takes less. */
+/* [byte] largest message: MPI counts are int. A test takes less. */
+#define MIGRATE_PIECE (1LL << 30)
 #endif
 
 enum { TAG = 3 };
@@ -36,7 +38,8 @@ static int64_t segments(const int64_t *bytes, int n_rank, int64_t *begin)
     return sum;
 }
 
-void *migrate_bytes(const struct comm *comm, const void *send, const int64_t *bytes_to, int64_t *bytes_from)
+void *migrate_bytes(
+    const struct comm *comm, const void *send, const int64_t *bytes_to, int64_t *bytes_from)
 {
     int n = comm->n_rank, self = comm->rank, n_request = 0;
     int64_t *send_begin = fail_alloc((size_t)n * sizeof *send_begin);
@@ -54,11 +57,14 @@ void *migrate_bytes(const struct comm *comm, const void *send, const int64_t *by
     /* Pieces of one pair share a tag: MPI keeps their order. */
     for (int r = 0; r < n; r++)
         for (int64_t at = 0; r != self && at < bytes_from[r]; at += MIGRATE_PIECE)
-            check_mpi(MPI_Irecv(recv + recv_begin[r] + at, piece_size(bytes_from[r], at), MPI_BYTE, r, TAG, comm->world, &request[n_request++]));
+            check_mpi(MPI_Irecv(recv + recv_begin[r] + at, piece_size(bytes_from[r], at), MPI_BYTE,
+                r, TAG, comm->world, &request[n_request++]));
     for (int r = 0; r < n; r++)
         for (int64_t at = 0; r != self && at < bytes_to[r]; at += MIGRATE_PIECE)
-            check_mpi(MPI_Isend(from + send_begin[r] + at, piece_size(bytes_to[r], at), MPI_BYTE, r, TAG, comm->world, &request[n_request++]));
-    if (bytes_to[self] > 0) memcpy(recv + recv_begin[self], from + send_begin[self], (size_t)bytes_to[self]);
+            check_mpi(MPI_Isend(from + send_begin[r] + at, piece_size(bytes_to[r], at), MPI_BYTE, r,
+                TAG, comm->world, &request[n_request++]));
+    if (bytes_to[self] > 0)
+        memcpy(recv + recv_begin[self], from + send_begin[self], (size_t)bytes_to[self]);
     check_mpi(MPI_Waitall(n_request, request, MPI_STATUSES_IGNORE));
 
     free(request);

@@ -1,7 +1,8 @@
-/* METIS 5.1. What it cannot do is done here: one part (it divides by zero), no edges, fewer vertices than parts, parts that it leaves empty.
+/* METIS 5.1. What it cannot do is done here: one part (it divides by zero), no edges, fewer
+ * vertices than parts, parts that it leaves empty.
  *
- * It catches SIGTERM and SIGABRT while it works, and jumps: SIGTERM waits until it is done. Threads other than this one must not take it either, see
- * signals_hold. */
+ * It catches SIGTERM and SIGABRT while it works, and jumps: SIGTERM waits until it is done. Threads
+ * other than this one must not take it either, see signals_hold. */
 #include "graph.h"
 
 #include <metis.h>
@@ -11,8 +12,9 @@
 
 #include "comm/fail.h"
 
-/* Recursive bisection, the best of four: the direct k-way method cut 8,000 pairs where this cut 6,200 (16 parts of 64 leaves of the L-box), in no
- * less time, and may leave parts empty. SLACK: imbalance that METIS may leave, in thousandths. */
+/* Recursive bisection, the best of four: the direct k-way method cut 8,000 pairs where this cut
+ * 6,200 (16 parts of 64 leaves of the L-box), in no less time, and may leave parts empty. SLACK:
+ * imbalance that METIS may leave, in thousandths. */
 enum { SEED = 1, CUTS = 4, SLACK = 5 };
 
 /* Vertices in their order, each part up to its share. */
@@ -75,7 +77,8 @@ static void call_metis(const struct graph *g, int n_part, const int64_t *share, 
     idx_t n = g->n, n_weight = 1, parts = n_part, cut, option[METIS_NOPTIONS];
     int64_t n_edge = g->begin[g->n];
     double shares = 0;
-    idx_t *begin = copied(g->begin, g->n + 1), *to = copied(g->to, n_edge), *weight = scaled(g->weight, g->n, 1), *link = scaled(g->link, n_edge, 1);
+    idx_t *begin = copied(g->begin, g->n + 1), *to = copied(g->to, n_edge),
+          *weight = scaled(g->weight, g->n, 1), *link = scaled(g->link, n_edge, 1);
     idx_t *found = fail_alloc((size_t)g->n * sizeof *found);
     real_t *target = fail_alloc((size_t)n_part * sizeof *target);
     sigset_t term, before;
@@ -88,9 +91,12 @@ static void call_metis(const struct graph *g, int n_part, const int64_t *share, 
     sigemptyset(&term);
     sigaddset(&term, SIGTERM);
     sigprocmask(SIG_BLOCK, &term, &before);
-    int code = METIS_PartGraphRecursive(&n, &n_weight, begin, to, weight, NULL, link, &parts, target, NULL, option, &cut, found);
+    int code = METIS_PartGraphRecursive(
+        &n, &n_weight, begin, to, weight, NULL, link, &parts, target, NULL, option, &cut, found);
     sigprocmask(SIG_SETMASK, &before, NULL);
-    if (code != METIS_OK) fail_stop(EXIT_IO, "METIS cannot cut a graph of %d vertices into %d parts: code %d", g->n, n_part, code);
+    if (code != METIS_OK)
+        fail_stop(EXIT_IO, "METIS cannot cut a graph of %d vertices into %d parts: code %d", g->n,
+            n_part, code);
     for (int v = 0; v < g->n; v++) part[v] = (int)found[v];
     void *all[] = {begin, to, weight, link, found, target};
     for (int k = 0; k < 6; k++) free(all[k]);

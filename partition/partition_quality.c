@@ -18,7 +18,8 @@ double partition_imbalance(const int64_t *work, const int64_t *share, int n)
     return sum == 0 ? 0 : most * (double)shares / (double)sum - 1;
 }
 
-void partition_quality_add(struct partition_quality *quality, const struct comm *comm, const struct partition_part *mine, const int64_t *share)
+void partition_quality_add(struct partition_quality *quality, const struct comm *comm,
+    const struct partition_part *mine, const int64_t *share)
 {
     int n = comm->n_rank;
     struct partition_part *all = fail_alloc((size_t)n * sizeof *all);
@@ -28,7 +29,8 @@ void partition_quality_add(struct partition_quality *quality, const struct comm 
         work[r] = all[r].work;
         cut += all[r].cut;
         neighbours += all[r].neighbours;
-        if (all[r].neighbours > quality->neighbours_max) quality->neighbours_max = all[r].neighbours;
+        if (all[r].neighbours > quality->neighbours_max)
+            quality->neighbours_max = all[r].neighbours;
     }
     quality->n++;
     quality->imbalance = partition_imbalance(work, share, n);

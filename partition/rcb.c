@@ -1,11 +1,15 @@
-/* Level by level, all groups of a level together, so the number of reductions grows with the logarithm of the number of leaves: about ten per level.
+/* Level by level, all groups of a level together, so the number of reductions grows with the
+ * logarithm of the number of leaves: about ten per level.
  *
- * The cut of a group is found exactly and without sorting: each coordinate is taken as a 64-bit key of the same order, and a radix selection finds
- * the key at which the sum of weights passes the target, 8 bits per pass over the points and one reduction of 256 sums per group. Points of that very
- * coordinate go all to the left or all to the right, whichever lies nearer to the target, so equal coordinates stay together. The cut lies half-way
- * to the next point, away from round-off of both.
+ * The cut of a group is found exactly and without sorting: each coordinate is taken as a 64-bit key
+ * of the same order, and a radix selection finds the key at which the sum of weights passes the
+ * target, 8 bits per pass over the points and one reduction of 256 sums per group. Points of that
+ * very coordinate go all to the left or all to the right, whichever lies nearer to the target, so
+ * equal coordinates stay together. The cut lies half-way to the next point, away from round-off of
+ * both.
  *
- * Only integers are summed, and minima and maxima do not depend on order: the same points give the same tree however they are spread over ranks. */
+ * Only integers are summed, and minima and maxima do not depend on order: the same points give the
+ * same tree however they are spread over ranks. */
 #include "partition.h"
 
 #include <assert.h>
@@ -23,7 +27,8 @@ struct group {
     int64_t shares, left; /* of all of them, of the first count/2 */
     int64_t weight;
     int axis[3]; /* longest side first */
-    /* The best cut so far: its axis, and the left side's keys, those below `key`, with `key` itself if `with`. */
+    /* The best cut so far: its axis, and the left side's keys, those below `key`, with `key` itself
+     * if `with`. */
     int best;
     uint64_t key;
     bool with;
@@ -54,10 +59,12 @@ static bool is_left(const struct group *g, const double x[3])
 }
 
 /* Weight and axes, longest side first, of each group. */
-static void measure(const struct comm *comm, const struct points *p, struct group *group, int n_group)
+static void measure(
+    const struct comm *comm, const struct points *p, struct group *group, int n_group)
 {
     int64_t *weight = fail_alloc((size_t)n_group * sizeof *weight);
-    double(*top)[6] = fail_alloc((size_t)n_group * sizeof *top); /* max of x and of -x: empty groups keep -inf */
+    /* max of x and of -x: empty groups keep -inf */
+    double(*top)[6] = fail_alloc((size_t)n_group * sizeof *top);
     for (int g = 0; g < n_group; g++)
         for (int a = 0; a < 6; a++) top[g][a] = -HUGE_VAL;
     for (int64_t i = 0; i < p->n; i++) {
@@ -77,7 +84,10 @@ static void measure(const struct comm *comm, const struct points *p, struct grou
         h->weight = weight[g];
         for (int a = 0; a < 3; a++) { /* insertion sort; ties keep x before y before z */
             int k = a;
-            for (; k > 0 && top[g][a] + top[g][3 + a] > top[g][h->axis[k - 1]] + top[g][3 + h->axis[k - 1]]; k--) h->axis[k] = h->axis[k - 1];
+            for (; k > 0 &&
+                   top[g][a] + top[g][3 + a] > top[g][h->axis[k - 1]] + top[g][3 + h->axis[k - 1]];
+                 k--)
+                h->axis[k] = h->axis[k - 1];
             h->axis[k] = a;
         }
         h->best = h->axis[0];
@@ -88,12 +98,16 @@ static void measure(const struct comm *comm, const struct points *p, struct grou
     free(top);
 }
 
-/* Takes the cut at `key` along `axis` if it is better than what the group has. `below`, `at`: weight of points below and at the key. A cut is good
- * enough where it misses by at most half the heaviest point (what distinct coordinates allow) or 5 % of the smaller side; else the next-longest
- * axis is tried too: a plane of points with one coordinate cannot be split along it. */
-static void consider(struct group *g, int axis, uint64_t key, int64_t below, int64_t at, int64_t heaviest)
+/* Takes the cut at `key` along `axis` if it is better than what the group has. `below`, `at`:
+ * weight of points below and at the key. A cut is good enough where it misses by at most half the
+ * heaviest point (what distinct coordinates allow) or 5 % of the smaller side; else the
+ * next-longest axis is tried too: a plane of points with one coordinate cannot be split along
+ * it. */
+static void consider(
+    struct group *g, int axis, uint64_t key, int64_t below, int64_t at, int64_t heaviest)
 {
-    int64_t goal = g->weight * g->left, low = llabs(below * g->shares - goal), high = llabs((below + at) * g->shares - goal);
+    int64_t goal = g->weight * g->left, low = llabs(below * g->shares - goal),
+            high = llabs((below + at) * g->shares - goal);
     int64_t smaller = g->left < g->shares - g->left ? g->left : g->shares - g->left;
     bool with = high < low;
     int64_t miss = with ? high : low;
@@ -107,10 +121,12 @@ static void consider(struct group *g, int axis, uint64_t key, int64_t below, int
 }
 
 /* Finds the cut of each open group along its `attempt`-longest axis. */
-static void select_keys(const struct comm *comm, const struct points *p, struct group *group, int n_group, int attempt, int64_t heaviest)
+static void select_keys(const struct comm *comm, const struct points *p, struct group *group,
+    int n_group, int attempt, int64_t heaviest)
 {
     uint64_t *prefix = fail_alloc((size_t)n_group * sizeof *prefix); /* leading digits of the key */
-    int64_t *below = fail_alloc((size_t)n_group * sizeof *below);    /* weight of points with a smaller prefix */
+    /* weight of points with a smaller prefix */
+    int64_t *below = fail_alloc((size_t)n_group * sizeof *below);
     int64_t *sum = fail_alloc((size_t)n_group * DIGIT * sizeof *sum);
     int *digit = fail_alloc((size_t)n_group * sizeof *digit);
     for (int pass = 0; pass < N_DIGIT; pass++) {
@@ -125,7 +141,8 @@ static void select_keys(const struct comm *comm, const struct points *p, struct 
         comm_sum_i64(comm, sum, n_group * DIGIT);
         for (int g = 0; g < n_group; g++) {
             if (!group[g].open) continue;
-            int64_t target = group[g].weight * group[g].left / group[g].shares; /* < weight, so a digit is found */
+            /* < weight, so a digit is found */
+            int64_t target = group[g].weight * group[g].left / group[g].shares;
             int d = 0;
             for (; below[g] + sum[g * DIGIT + d] <= target; d++) below[g] += sum[g * DIGIT + d];
             prefix[g] = prefix[g] << 8 | (uint64_t)d;
@@ -133,18 +150,22 @@ static void select_keys(const struct comm *comm, const struct points *p, struct 
         }
     }
     for (int g = 0; g < n_group; g++)
-        if (group[g].open) consider(&group[g], group[g].axis[attempt], prefix[g], below[g], sum[g * DIGIT + digit[g]], heaviest);
+        if (group[g].open)
+            consider(&group[g], group[g].axis[attempt], prefix[g], below[g],
+                sum[g * DIGIT + digit[g]], heaviest);
     free(prefix);
     free(below);
     free(sum);
     free(digit);
 }
 
-/* Coordinates of the cuts: half-way between the last point on the left and the first on the right. A group without points gets 0, which is as good
- * as any. */
-static void place_cuts(const struct comm *comm, const struct points *p, const struct group *group, int n_group, double *cut)
+/* Coordinates of the cuts: half-way between the last point on the left and the first on the right.
+ * A group without points gets 0, which is as good as any. */
+static void place_cuts(const struct comm *comm, const struct points *p, const struct group *group,
+    int n_group, double *cut)
 {
-    double(*side)[2] = fail_alloc((size_t)n_group * sizeof *side); /* max of x on the left, of -x on the right */
+    /* max of x on the left, of -x on the right */
+    double(*side)[2] = fail_alloc((size_t)n_group * sizeof *side);
     for (int g = 0; g < n_group; g++) side[g][0] = side[g][1] = -HUGE_VAL;
     for (int64_t i = 0; i < p->n; i++) {
         int g = p->group[i];
@@ -175,21 +196,27 @@ static int64_t shares_of(const int64_t *share, int first, int count)
     return sum;
 }
 
-/* Child of node g->node with `count` leaves from `first`: a leaf, or a node and a group of the next level. */
-static int child(const int64_t *share, int first, int count, struct group *next, int *n_next, int *n_node)
+/* Child of node g->node with `count` leaves from `first`: a leaf, or a node and a group of the next
+ * level. */
+static int child(
+    const int64_t *share, int first, int count, struct group *next, int *n_next, int *n_node)
 {
     if (count == 1) return -1 - first;
-    next[(*n_next)++] = (struct group){
-        .node = *n_node, .first = first, .count = count, .shares = shares_of(share, first, count), .left = shares_of(share, first, count / 2)};
+    next[(*n_next)++] = (struct group){.node = *n_node,
+        .first = first,
+        .count = count,
+        .shares = shares_of(share, first, count),
+        .left = shares_of(share, first, count / 2)};
     return (*n_node)++;
 }
 
 /* Writes the level's nodes and makes the groups of the next level. Returns how many. */
-static int split(struct rcb *rcb, const int64_t *share, struct points *p, const struct group *group, int n_group, const double *cut,
-    struct group *next, int *n_node)
+static int split(struct rcb *rcb, const int64_t *share, struct points *p, const struct group *group,
+    int n_group, const double *cut, struct group *next, int *n_node)
 {
     int n_next = 0;
-    int(*to)[2] = fail_alloc((size_t)n_group * sizeof *to); /* group of the next level, -1: a leaf */
+    /* group of the next level, -1: a leaf */
+    int(*to)[2] = fail_alloc((size_t)n_group * sizeof *to);
     for (int g = 0; g < n_group; g++) {
         const struct group *h = &group[g];
         int n_left = h->count / 2, k = h->node;
@@ -208,12 +235,14 @@ static int split(struct rcb *rcb, const int64_t *share, struct points *p, const 
     return n_next;
 }
 
-struct rcb *rcb_create(const struct comm *comm, int n_leaf, const int64_t *share, const double *x, const int64_t *weight, int64_t n)
+struct rcb *rcb_create(const struct comm *comm, int n_leaf, const int64_t *share, const double *x,
+    const int64_t *weight, int64_t n)
 {
     int n_group = 0, n_node = 0;
     struct rcb *rcb = fail_alloc(sizeof *rcb);
     struct points p = {x, weight, fail_alloc((size_t)n * sizeof *p.group), n};
-    struct group *group = fail_alloc((size_t)n_leaf * sizeof *group), *next = fail_alloc((size_t)n_leaf * sizeof *next);
+    struct group *group = fail_alloc((size_t)n_leaf * sizeof *group),
+                 *next = fail_alloc((size_t)n_leaf * sizeof *next);
     double *cut = fail_alloc((size_t)n_leaf * sizeof *cut);
     int64_t heaviest = 0;
 
@@ -223,7 +252,8 @@ struct rcb *rcb_create(const struct comm *comm, int n_leaf, const int64_t *share
     rcb->left = fail_alloc((size_t)rcb->n_node * sizeof *rcb->left);
     rcb->right = fail_alloc((size_t)rcb->n_node * sizeof *rcb->right);
     for (int64_t i = 0; i < n; i++) {
-        assert(weight[i] > 0 && isfinite(x[3 * i]) && isfinite(x[3 * i + 1]) && isfinite(x[3 * i + 2]));
+        assert(weight[i] > 0 && isfinite(x[3 * i]) && isfinite(x[3 * i + 1]) &&
+               isfinite(x[3 * i + 2]));
         if (weight[i] > heaviest) heaviest = weight[i];
     }
     comm_max_i64(comm, &heaviest, 1);

@@ -1,4 +1,5 @@
-/* Checks for tests that run on several ranks, where cmocka's report per process would be a jumble: the first failure on any rank ends the job. */
+/* Checks for tests that run on several ranks, where cmocka's report per process would be a jumble:
+ * the first failure on any rank ends the job. */
 #ifndef DEMOCLES_TESTS_MPI_CHECK_H
 #define DEMOCLES_TESTS_MPI_CHECK_H
 

@@ -1,12 +1,13 @@
-/* Exclusive prefix sum of ints, in place, in two passes over blocks and one over the sums of blocks. The tree depends on n alone.
- * data [n + 1]: on return data[i] = sum of what stood before i, data[n] the total (what stood at n does not count). */
+/* Exclusive prefix sum of ints, in place, in two passes over blocks and one over the sums of
+ * blocks. The tree depends on n alone. data [n + 1]: on return data[i] = sum of what stood before
+ * i, data[n] the total (what stood at n does not count). */
 #define SCAN_GROUP 256
 #define SCAN_ITEM 8
 #define SCAN_BLOCK (SCAN_GROUP * SCAN_ITEM)
 
 /* Each group sums SCAN_BLOCK entries; block [number of blocks]. */
-__kernel __attribute__((reqd_work_group_size(SCAN_GROUP, 1, 1)))
-void scan_sums(int n, __global const int *data, __global int *block)
+__kernel __attribute__((reqd_work_group_size(SCAN_GROUP, 1, 1))) void scan_sums(
+    int n, __global const int *data, __global int *block)
 {
     __local int part[SCAN_GROUP];
     int l = get_local_id(0), g = get_group_id(0), first = g * SCAN_BLOCK + l * SCAN_ITEM, sum = 0;
@@ -21,9 +22,10 @@ void scan_sums(int n, __global const int *data, __global int *block)
     }
 }
 
-/* One work-item turns the sums into offsets and stores the total: a few hundred entries even for a million elements. */
-__kernel __attribute__((reqd_work_group_size(1, 1, 1)))
-void scan_blocks(int n, __global int *data, __global int *block)
+/* One work-item turns the sums into offsets and stores the total: a few hundred entries even for a
+ * million elements. */
+__kernel __attribute__((reqd_work_group_size(1, 1, 1))) void scan_blocks(
+    int n, __global int *data, __global int *block)
 {
     if (get_global_id(0) > 0) return;
     int sum = 0, n_block = (n + SCAN_BLOCK - 1) / SCAN_BLOCK;
@@ -35,8 +37,8 @@ void scan_blocks(int n, __global int *data, __global int *block)
     data[n] = sum;
 }
 
-__kernel __attribute__((reqd_work_group_size(SCAN_GROUP, 1, 1)))
-void scan_apply(int n, __global int *data, __global const int *block)
+__kernel __attribute__((reqd_work_group_size(SCAN_GROUP, 1, 1))) void scan_apply(
+    int n, __global int *data, __global const int *block)
 {
     __local int part[SCAN_GROUP];
     int l = get_local_id(0), g = get_group_id(0), first = g * SCAN_BLOCK + l * SCAN_ITEM, sum = 0;

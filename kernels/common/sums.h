@@ -1,11 +1,12 @@
-/* Sums of doubles that do not depend on the order of their terms, and an element's share in each of the conserved quantities.
+/* Sums of doubles that do not depend on the order of their terms, and an element's share in each of
+ * the conserved quantities.
  *
- * Every term is cut into three integers, x = hi 2^-20 + mid 2^-50 + lo 2^-80; integers are added, and their sum is the same in any order, so on any
- * number
- * of ranks. Only what lies below 2^-80 (8.3e-25 J: thermal energies are 4e-21 J) is rounded, once per term and to nearest, so a sum of terms that are
- * whole multiples of 2^-80 is exact. Terms up to 2^33 in magnitude (8.6e9 J), sums up to 2^43 (8.8e12 J), 2^33 terms: a term beyond that, or NaN, is
- * not
- * added but counted, and the sum is then NaN.
+ * Every term is cut into three integers, x = hi 2^-20 + mid 2^-50 + lo 2^-80; integers are added,
+ * and their sum is the same in any order, so on any number of ranks. Only what lies below 2^-80
+ * (8.3e-25 J: thermal energies are 4e-21 J) is rounded, once per term and to nearest, so a sum of
+ * terms that are whole multiples of 2^-80 is exact. Terms up to 2^33 in magnitude (8.6e9 J), sums
+ * up to 2^43 (8.8e12 J), 2^33 terms: a term beyond that, or NaN, is not added but counted, and the
+ * sum is then NaN.
  *
  * Same text on host and device; double on both, whatever `real` is. Knows no memory. */
 #ifndef DEMOCLES_SUMS_H
@@ -65,13 +66,16 @@ struct sums_element {
     double radius, mass;     /* [m], [kg] */
 };
 
-/* A sphere's terms: m v^2/2, I w^2/2 with I = 0.4 m r^2, -m g.(x - origin) [J]; m v [kg m/s]; x x m v + I w [J s], about the zero of x. */
-SUMS void sums_element(struct sums_element e, const double *gravity, const double *origin, double *term)
+/* A sphere's terms: m v^2/2, I w^2/2 with I = 0.4 m r^2, -m g.(x - origin) [J]; m v [kg m/s]; x x m
+ * v + I w [J s], about the zero of x. */
+SUMS void sums_element(
+    struct sums_element e, const double *gravity, const double *origin, double *term)
 {
     double inertia = 0.4 * e.mass * e.radius * e.radius;
     double vv = e.v[0] * e.v[0] + e.v[1] * e.v[1] + e.v[2] * e.v[2];
     double ww = e.w[0] * e.w[0] + e.w[1] * e.w[1] + e.w[2] * e.w[2];
-    double depth = gravity[0] * (e.x[0] - origin[0]) + gravity[1] * (e.x[1] - origin[1]) + gravity[2] * (e.x[2] - origin[2]);
+    double depth = gravity[0] * (e.x[0] - origin[0]) + gravity[1] * (e.x[1] - origin[1]) +
+                   gravity[2] * (e.x[2] - origin[2]);
 
     term[SUMS_KINETIC] = 0.5 * e.mass * vv;
     term[SUMS_ROTATIONAL] = 0.5 * inertia * ww;

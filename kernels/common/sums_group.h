@@ -1,5 +1,6 @@
-/* Sums in integers (sums.h) over many items: each of SUMS_GROUPS groups strides over the items, every work-item adds its own in registers, one
- * work-item per number adds up the group's in local memory, and the host adds up partial [SUMS_GROUPS][sums][SUMS_WIDTH]. For devices with double
+/* Sums in integers (sums.h) over many items: each of SUMS_GROUPS groups strides over the items,
+ * every work-item adds its own in registers, one work-item per number adds up the group's in local
+ * memory, and the host adds up partial [SUMS_GROUPS][sums][SUMS_WIDTH]. For devices with double
  * precision. */
 #ifndef DEMOCLES_SUMS_GROUP_H
 #define DEMOCLES_SUMS_GROUP_H

@@ -1,10 +1,14 @@
-/* Numbers that host and device share. The laws (law_*.h) are written in these types alone, so that the very same text runs on both.
+/* Numbers that host and device share. The laws (law_*.h) are written in these types alone, so that
+ * the very same text runs on both.
  *
- * real   arithmetic of contacts and velocities: float or double, by REAL_IS_FLOAT (0 or 1, default 0)
- * preal  positions and their differences: by POSITION_IS_FLOAT; `mixed` precision is real = float, preal = double
+ * real   arithmetic of contacts and velocities: float or double, by REAL_IS_FLOAT (0 or 1, default
+ * 0)
+ * preal  positions and their differences: by POSITION_IS_FLOAT; `mixed` precision is real = float,
+ * preal = double
  *
- * Only + - * / sqrt fma are used on state: they are correctly rounded (division and sqrt in float where the device says so), so bits do
- * not depend on the vendor. No contraction: fma is written where it is wanted. */
+ * Only + - * / sqrt fma are used on state: they are correctly rounded (division and sqrt in float
+ * where the device says so), so bits do not depend on the vendor. No contraction: fma is written
+ * where it is wanted. */
 #ifndef DEMOCLES_TYPES_H
 #define DEMOCLES_TYPES_H
 
@@ -20,7 +24,8 @@
 #if !REAL_IS_FLOAT || !POSITION_IS_FLOAT
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #endif
-#define LAW static inline __attribute__((always_inline)) /* a call that is left over keeps the loop over work-items scalar */
+/* a call that is left over keeps the loop over work-items scalar */
+#define LAW static inline __attribute__((always_inline))
 #define r_sqrt(x) sqrt(x)
 #define r_fma(a, b, c) fma((a), (b), (c))
 #define r_abs(x) fabs(x)

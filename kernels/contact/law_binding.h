@@ -1,6 +1,7 @@
-/* Binding force: a bond forms at the first touch and lets the normal spring pull until it pulls harder than F_b, then it breaks at once and
- * all history of the contact is dropped; it forms again at the next touch. While it holds, friction has the cap mu (F_n + F_b).
- * The list of candidates must reach F_b/k_n beyond touching. */
+/* Binding force: a bond forms at the first touch and lets the normal spring pull until it pulls
+ * harder than F_b, then it breaks at once and all history of the contact is dropped; it forms again
+ * at the next touch. While it holds, friction has the cap mu (F_n + F_b). The list of candidates
+ * must reach F_b/k_n beyond touching. */
 #ifndef DEMOCLES_LAW_BINDING_H
 #define DEMOCLES_LAW_BINDING_H
 

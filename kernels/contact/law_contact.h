@@ -1,9 +1,11 @@
-/* One contact, one step: from kinematics, parameters and history to the force, torques and energies at t^{n+1}.
+/* One contact, one step: from kinematics, parameters and history to the force, torques and energies
+ * at t^{n+1}.
  *
- * Straight line: no loop, no early return, selects instead of branches, so that a kernel with one work-item per interaction vectorises.
- * A feature that a scene does not use (WITH_ flag 0) leaves no instruction, and one that is compiled in but not used by a pair leaves the bits
- * of the result alone. All structs are private; which members live in buffers is the kernel's choice (the flags say which are needed).
- * Knows no elements, no lists, no memory. */
+ * Straight line: no loop, no early return, selects instead of branches, so that a kernel with one
+ * work-item per interaction vectorises. A feature that a scene does not use (WITH_ flag 0) leaves
+ * no instruction, and one that is compiled in but not used by a pair leaves the bits of the result
+ * alone. All structs are private; which members live in buffers is the kernel's choice (the flags
+ * say which are needed). Knows no elements, no lists, no memory. */
 #ifndef DEMOCLES_LAW_CONTACT_H
 #define DEMOCLES_LAW_CONTACT_H
 
@@ -29,7 +31,8 @@ struct contact_history {
     vec3 damping_r; /* WITH_ENERGY and rolling: of M; CDT: all of M [N m] */
 };
 
-/* Force on i (on j: -force, exactly). Torque on i: l_i couple + moment, on j: l_j couple - moment. */
+/* Force on i (on j: -force, exactly). Torque on i: l_i couple + moment, on j: l_j couple -
+ * moment. */
 struct contact_result {
     vec3 force;   /* -F_n n + F_t [N] */
     vec3 couple;  /* n x F_t [N] */
@@ -55,10 +58,14 @@ struct contact_step {
     struct slider slide, roll; /* friction; EPSD */
 };
 
-LAW int contact_is_epsd(struct contact_parameters p) { return WITH_ROLLING_EPSD && (!WITH_ROLLING_CDT || p.k_r > 0); }
+LAW int contact_is_epsd(struct contact_parameters p)
+{
+    return WITH_ROLLING_EPSD && (!WITH_ROLLING_CDT || p.k_r > 0);
+}
 
 /* Normal part, state and the factors that friction and rolling share. */
-LAW struct contact_step contact_begin(struct contact_kinematics k, struct contact_parameters p, real dt, int state)
+LAW struct contact_step contact_begin(
+    struct contact_kinematics k, struct contact_parameters p, real dt, int state)
 {
     struct contact_step s;
     int touching = k.delta > 0;
@@ -85,32 +92,40 @@ LAW struct contact_step contact_begin(struct contact_kinematics k, struct contac
 }
 
 /* x where `live`, else zero. */
-LAW vec3 contact_select(int live, vec3 x) { return v3(live ? x.x : (real)0, live ? x.y : (real)0, live ? x.z : (real)0); }
-
-/* The energy ledger; h still holds what was at t^n, r gets energies and losses, the dashpot forces of t^{n+1} go to h.
- * Each loss is the mean of the old and the new force times the half-step velocity: that, and no end-of-step value, is what the kicks of
- * leapfrog took. A bond that breaks loses the energy of its springs less the work they still did in this step. */
-LAW void contact_ledger(struct contact_kinematics k, struct contact_parameters p, real dt, struct contact_step s, vec3 moment,
-    struct contact_history *h, struct contact_result *r)
+LAW vec3 contact_select(int live, vec3 x)
 {
-    real stiffness_t = p.mu > 0 ? p.k_t * s.factors.spring : (real)0; /* without friction there is no spring */
+    return v3(live ? x.x : (real)0, live ? x.y : (real)0, live ? x.z : (real)0);
+}
+
+/* The energy ledger; h still holds what was at t^n, r gets energies and losses, the dashpot forces
+ * of t^{n+1} go to h. Each loss is the mean of the old and the new force times the half-step
+ * velocity: that, and no end-of-step value, is what the kicks of leapfrog took. A bond that breaks
+ * loses the energy of its springs less the work they still did in this step. */
+LAW void contact_ledger(struct contact_kinematics k, struct contact_parameters p, real dt,
+    struct contact_step s, vec3 moment, struct contact_history *h, struct contact_result *r)
+{
+    /* without friction there is no spring */
+    real stiffness_t = p.mu > 0 ? p.k_t * s.factors.spring : (real)0;
     real stiffness_r = p.k_r * s.factors.spring;
     real damping_n = s.force_n - s.spring;
     real half_dt = (real)0.5 * dt;
-    real before_touch = (real)0.5 * (dt - s.carry.time); /* springs start from the touch, kicks take the whole step */
+    /* springs start from the touch, kicks take the whole step */
+    real before_touch = (real)0.5 * (dt - s.carry.time);
 
     r->elastic = normal_energy(s.spring, k.delta, p);
     r->loss_n = half_dt * (h->damping_n + damping_n) * k.v_n_half;
     h->damping_n = damping_n;
     if (WITH_TANGENTIAL) {
         real stiffness_old = p.mu > 0 ? p.k_t * s.carry.before : (real)0;
-        real lost = slider_loss(stiffness_old, h->xi, s.alive ? stiffness_t : (real)0, s.trial_t, s.slide.spring, k.v_t, s.carry);
+        real lost = slider_loss(stiffness_old, h->xi, s.alive ? stiffness_t : (real)0, s.trial_t,
+            s.slide.spring, k.v_t, s.carry);
         lost -= s.slide.slips ? before_touch * v3_dot(s.slide.force, k.v_t) : (real)0;
         r->elastic += (real)0.5 * stiffness_t * v3_dot(s.slide.spring, s.slide.spring);
         r->loss_s = s.broke ? (real)0 : lost;
         r->loss_b = s.broke ? lost : (real)0;
         if (WITH_TANGENTIAL_DAMPING) {
-            vec3 damping = contact_select(!s.slide.slips, v3_fma(stiffness_t, s.slide.spring, s.slide.force));
+            vec3 damping =
+                contact_select(!s.slide.slips, v3_fma(stiffness_t, s.slide.spring, s.slide.force));
             r->loss_t = -half_dt * v3_dot(v3_add(h->damping_t, damping), k.v_t);
             h->damping_t = damping;
         }
@@ -124,10 +139,15 @@ LAW void contact_ledger(struct contact_kinematics k, struct contact_parameters p
     if (KINEMATICS_ROLLING) {
         vec3 damping = moment;
         if (WITH_ROLLING_EPSD) {
-            real lost = slider_loss(p.k_r * s.carry.before, h->theta, s.alive ? stiffness_r : (real)0, s.trial_r, s.roll.spring, k.w_r, s.carry);
-            damping = contact_select(!s.roll.slips || !contact_is_epsd(p), v3_fma(stiffness_r, s.roll.spring, moment)); /* CDT: spring 0 */
+            real lost = slider_loss(p.k_r * s.carry.before, h->theta,
+                s.alive ? stiffness_r : (real)0, s.trial_r, s.roll.spring, k.w_r, s.carry);
+            /* CDT: spring 0 */
+            damping = contact_select(
+                !s.roll.slips || !contact_is_epsd(p), v3_fma(stiffness_r, s.roll.spring, moment));
             r->elastic += (real)0.5 * stiffness_r * v3_dot(s.roll.spring, s.roll.spring);
-            r->loss_r = s.roll.slips && contact_is_epsd(p) ? lost - before_touch * v3_dot(s.roll.force, k.w_r) : lost;
+            r->loss_r = s.roll.slips && contact_is_epsd(p)
+                            ? lost - before_touch * v3_dot(s.roll.force, k.w_r)
+                            : lost;
         }
         r->loss_r -= half_dt * v3_dot(v3_add(h->damping_r, damping), k.w_r);
         h->damping_r = damping;
@@ -135,7 +155,8 @@ LAW void contact_ledger(struct contact_kinematics k, struct contact_parameters p
 }
 
 /* The contact law. h: history at t^n on entry, at t^{n+1} on return; dt [s]. */
-LAW struct contact_result contact_law(struct contact_kinematics k, struct contact_parameters p, real dt, struct contact_history *h)
+LAW struct contact_result contact_law(
+    struct contact_kinematics k, struct contact_parameters p, real dt, struct contact_history *h)
 {
     struct contact_step s = contact_begin(k, p, dt, h->state);
     struct contact_result r;

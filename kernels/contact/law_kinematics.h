@@ -1,11 +1,14 @@
 /* Geometry and velocities of one contact, at the two times that a second-order step needs.
  *
- * The force at t^{n+1} is made from positions at t^{n+1} and velocities at the half step before it. What is integrated over the step (the
- * sliding and rolling of the two surfaces on each other) must be taken at the half step in everything, normal and lever arms too: with
- * v^{n+1/2} and n^{n+1} a spinning sphere creeps sideways, to first order in dt. What acts at t^{n+1} (the dashpots) takes n^{n+1}; the
- * laws bring those velocities forward by half a step. Leapfrog makes D_h = D^{n+1} - (v_j - v_i) dt/2 the exact mean of D^n and D^{n+1}.
+ * The force at t^{n+1} is made from positions at t^{n+1} and velocities at the half step before it.
+ * What is integrated over the step (the sliding and rolling of the two surfaces on each other) must
+ * be taken at the half step in everything, normal and lever arms too: with v^{n+1/2} and n^{n+1} a
+ * spinning sphere creeps sideways, to first order in dt. What acts at t^{n+1} (the dashpots) takes
+ * n^{n+1}; the laws bring those velocities forward by half a step. Leapfrog makes D_h = D^{n+1} -
+ * (v_j - v_i) dt/2 the exact mean of D^n and D^{n+1}.
  *
- * i is the lower global id. Knows no law. Angular velocities are not read unless WITH_TANGENTIAL or rolling asks for them. */
+ * i is the lower global id. Knows no law. Angular velocities are not read unless WITH_TANGENTIAL or
+ * rolling asks for them. */
 #ifndef DEMOCLES_LAW_KINEMATICS_H
 #define DEMOCLES_LAW_KINEMATICS_H
 
@@ -23,16 +26,16 @@ struct contact_kinematics {
     real delta;    /* overlap at t^{n+1} [m] */
     real l_i, l_j; /* lever arms at t^{n+1} [m]; l_i + l_j is the distance of the centres */
     real v_n;      /* approach speed along n [m/s] */
-    real v_n_half; /* along n_half: v_n_half dt is the growth of delta over the step, to third order */
-    vec3 v_t;      /* of i relative to j at the contact, perpendicular to n_half [m/s] */
-    vec3 v_t_end;  /* the half-step velocities seen at t^{n+1}, perpendicular to n [m/s] */
-    vec3 w_r;      /* w_i - w_j perpendicular to n_half [rad/s] */
-    vec3 w_r_end;  /* perpendicular to n */
+    /* along n_half: v_n_half dt is the growth of delta over the step, to third order */
+    real v_n_half;
+    vec3 v_t;     /* of i relative to j at the contact, perpendicular to n_half [m/s] */
+    vec3 v_t_end; /* the half-step velocities seen at t^{n+1}, perpendicular to n [m/s] */
+    vec3 w_r;     /* w_i - w_j perpendicular to n_half [rad/s] */
+    vec3 w_r_end; /* perpendicular to n */
 };
 
-/* l_i w_i + l_j w_j, written so that equal levers need the sum of the spins alone (a kernel for equal spheres loads no more), with the same bits,
- * also when i
- * and j change places. */
+/* l_i w_i + l_j w_j, written so that equal levers need the sum of the spins alone (a kernel for
+ * equal spheres loads no more), with the same bits, also when i and j change places. */
 LAW vec3 kinematics_spin(real l_i, real l_j, vec3 w_i, vec3 w_j)
 {
     vec3 mean = v3_scale((real)0.5 * (l_i + l_j), v3_add(w_i, w_j));
@@ -42,11 +45,10 @@ LAW vec3 kinematics_spin(real l_i, real l_j, vec3 w_i, vec3 w_j)
     return mean;
 }
 
-/* What pairs and walls share. u: velocity of i relative to j at the centres; spin_half, spin_end: l_i w_i + l_j w_j with the levers of the half step
- * and of
- * t^{n+1}; w: w_i - w_j. */
-LAW struct contact_kinematics contact_kinematics_of(
-    vec3 n, vec3 n_half, real delta, real l_i, real l_j, vec3 u, vec3 spin_half, vec3 spin_end, vec3 w)
+/* What pairs and walls share. u: velocity of i relative to j at the centres; spin_half, spin_end:
+ * l_i w_i + l_j w_j with the levers of the half step and of t^{n+1}; w: w_i - w_j. */
+LAW struct contact_kinematics contact_kinematics_of(vec3 n, vec3 n_half, real delta, real l_i,
+    real l_j, vec3 u, vec3 spin_half, vec3 spin_end, vec3 w)
 {
     struct contact_kinematics k;
     vec3 zero = v3(0, 0, 0);
@@ -71,8 +73,9 @@ LAW struct contact_kinematics contact_kinematics_of(
     return k;
 }
 
-/* Direction of u, given that |u| is near 1, and |u| itself: two Newton steps for 1/|u| from 1, y <- y (3 - |u|^2 y^2)/2, whose error is
- * (|u|^2 - 1)^4/5. Where |u|^2 is off by more than a half (a step that crosses the centre) it is n, and 1. */
+/* Direction of u, given that |u| is near 1, and |u| itself: two Newton steps for 1/|u| from 1, y <-
+ * y (3 - |u|^2 y^2)/2, whose error is (|u|^2 - 1)^4/5. Where |u|^2 is off by more than a half (a
+ * step that crosses the centre) it is n, and 1. */
 LAW vec3 kinematics_unit(vec3 u, vec3 n, real *length)
 {
     real s = v3_dot(u, u);
@@ -83,10 +86,12 @@ LAW vec3 kinematics_unit(vec3 u, vec3 n, real *length)
     return v3(near ? y * u.x : n.x, near ? y * u.y : n.y, near ? y * u.z : n.z);
 }
 
-/* Two spheres. D = x_j - x_i at t^{n+1} [m] (periodic image taken); v, w at the half step; radii [m]; dt [s].
- * Without WITH_SIZES and rolling only w_i + w_j is used. The distance and the overlap are formed in preal, everything after in real. Coincident
+/* Two spheres. D = x_j - x_i at t^{n+1} [m] (periodic image taken); v, w at the half step; radii
+ * [m]; dt [s]. Without WITH_SIZES and rolling only w_i + w_j is used. The distance and the overlap
+ * are formed in preal, everything after in real. Coincident
  * centres: n = (1, 0, 0). */
-LAW struct contact_kinematics contact_kinematics_pair(pvec3 D, vec3 v_i, vec3 v_j, vec3 w_i, vec3 w_j, real r_i, real r_j, real dt)
+LAW struct contact_kinematics contact_kinematics_pair(
+    pvec3 D, vec3 v_i, vec3 v_j, vec3 w_i, vec3 w_j, real r_i, real r_j, real dt)
 {
     preal sum = (preal)r_i + (preal)r_j;
     preal square = p3_dot(D, D);
@@ -99,7 +104,8 @@ LAW struct contact_kinematics contact_kinematics_pair(pvec3 D, vec3 v_i, vec3 v_
     real l_i = r_i - half_delta, l_j = r_j - half_delta;
     vec3 u = v3_sub(v_i, v_j);
     vec3 x = v3_of_p3(D);
-    vec3 n = v3(coincide ? (real)1 : inverse * x.x, coincide ? (real)0 : inverse * x.y, coincide ? (real)0 : inverse * x.z);
+    vec3 n = v3(coincide ? (real)1 : inverse * x.x, coincide ? (real)0 : inverse * x.y,
+        coincide ? (real)0 : inverse * x.z);
     vec3 n_half = n;
     real shift = 0; /* l_half - l */
 
@@ -108,21 +114,28 @@ LAW struct contact_kinematics contact_kinematics_pair(pvec3 D, vec3 v_i, vec3 v_
         n_half = kinematics_unit(v3_scale(inverse, v3_fma((real)0.5 * dt, u, x)), n, &length);
         shift = (real)0.5 * d * (length - (real)1);
     }
-    vec3 spin_half = kinematics_spin(l_i + shift, l_j + shift, w_i, w_j), spin_end = kinematics_spin(l_i, l_j, w_i, w_j);
-    return contact_kinematics_of(n, n_half, delta, l_i, l_j, u, spin_half, spin_end, v3_sub(w_i, w_j));
+    vec3 spin_half = kinematics_spin(l_i + shift, l_j + shift, w_i, w_j),
+         spin_end = kinematics_spin(l_i, l_j, w_i, w_j);
+    return contact_kinematics_of(
+        n, n_half, delta, l_i, l_j, u, spin_half, spin_end, v3_sub(w_i, w_j));
 }
 
-/* A sphere and a wall whose overlap and normal the caller knows (one-sided plane: the distance has a sign).
- * n, n_half: unit vectors from the centre towards the wall at t^{n+1} and at the half step; delta, delta_half: r - distance [m];
+/* A sphere and a wall whose overlap and normal the caller knows (one-sided plane: the distance has
+ * a sign). n, n_half: unit vectors from the centre towards the wall at t^{n+1} and at the half
+ * step; delta, delta_half: r - distance [m];
  * v_wall: velocity of the wall point, (p^{n+1} - p^n)/dt [m/s]. */
-LAW struct contact_kinematics contact_kinematics_wall(vec3 n, vec3 n_half, real delta, real delta_half, vec3 v_i, vec3 v_wall, vec3 w_i, real r_i)
+LAW struct contact_kinematics contact_kinematics_wall(
+    vec3 n, vec3 n_half, real delta, real delta_half, vec3 v_i, vec3 v_wall, vec3 w_i, real r_i)
 {
     vec3 spin_half = v3_scale(r_i - delta_half, w_i), spin_end = v3_scale(r_i - delta, w_i);
-    return contact_kinematics_of(n, n_half, delta, r_i - delta, 0, v3_sub(v_i, v_wall), spin_half, spin_end, w_i);
+    return contact_kinematics_of(
+        n, n_half, delta, r_i - delta, 0, v3_sub(v_i, v_wall), spin_half, spin_end, w_i);
 }
 
-/* A sphere and the closest point of a two-sided wall. D, D_half: closest point minus centre at t^{n+1} and at the half step [m]. */
-LAW struct contact_kinematics contact_kinematics_point(pvec3 D, pvec3 D_half, vec3 v_i, vec3 v_wall, vec3 w_i, real r_i)
+/* A sphere and the closest point of a two-sided wall. D, D_half: closest point minus centre at
+ * t^{n+1} and at the half step [m]. */
+LAW struct contact_kinematics contact_kinematics_point(
+    pvec3 D, pvec3 D_half, vec3 v_i, vec3 v_wall, vec3 w_i, real r_i)
 {
     preal square = p3_dot(D, D);
     int coincide = square <= (preal)1e-20 * (preal)r_i * (preal)r_i;
@@ -131,7 +144,8 @@ LAW struct contact_kinematics contact_kinematics_point(pvec3 D, pvec3 D_half, ve
     real inverse = (real)1 / d;
     real delta = (real)((preal)r_i - distance);
     vec3 x = v3_of_p3(D);
-    vec3 n = v3(coincide ? (real)1 : inverse * x.x, coincide ? (real)0 : inverse * x.y, coincide ? (real)0 : inverse * x.z);
+    vec3 n = v3(coincide ? (real)1 : inverse * x.x, coincide ? (real)0 : inverse * x.y,
+        coincide ? (real)0 : inverse * x.z);
     vec3 n_half = n;
     real delta_half = delta;
 

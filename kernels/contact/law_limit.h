@@ -1,20 +1,28 @@
-/* How large a time step the contacts of one element allow: a bound that holds for any network of spheres and walls.
+/* How large a time step the contacts of one element allow: a bound that holds for any network of
+ * spheres and walls.
  *
- * Leapfrog with dashpots of the half step is stable iff 4 M - dt^2 K - 2 dt C is positive. A contact with relative displacement u, and
- * rotations joined to it by the levers l, is bounded by Cauchy and Schwarz with weights of its four ends (1, 2.5 s) m^(-1/2):
+ * Leapfrog with dashpots of the half step is stable iff 4 M - dt^2 K - 2 dt C is positive. A
+ * contact with relative displacement u, and rotations joined to it by the levers l, is bounded by
+ * Cauchy and Schwarz with weights of its four ends (1, 2.5 s) m^(-1/2):
  *     |u|^2 <= (sum of weights) (sum of |part|^2/weight),
- * so that K and C are below block diagonal matrices, for element i with w = 1/m and p = w_i + (w_i w_j)^(1/2) (wall: w_i) of each contact
- *     T_i = sum p [k_n n n^T + (1 + 2.5 s) k_t (1 - n n^T)]                                          translation
- *     R_i = sum {p (1 + 2.5 s)/s k_t (1 - n n^T) + q k_r (1 - n n^T)},  q = 1/I_i + (I_i I_j)^(-1/2)     rotation
- * (the sums with gamma in place of k for C), and dt^2 a + 2 dt b <= 4 with a, b their largest eigenvalues suffices. Any s > 0 is allowed, the
- * same for all contacts; s = 1 is exact for two equal spheres, limit_share is better in beds. The weights m^(-1/2) in place of 1/m keep the bound
+ * so that K and C are below block diagonal matrices, for element i with w = 1/m and p = w_i + (w_i
+ * w_j)^(1/2) (wall: w_i) of each contact
+ *     T_i = sum p [k_n n n^T + (1 + 2.5 s) k_t (1 - n n^T)]                                        
+ *        translation
+ *     R_i = sum {p (1 + 2.5 s)/s k_t (1 - n n^T) + q k_r (1 - n n^T)},  q = 1/I_i + (I_i
+ *       I_j)^(-1/2)     rotation
+ * (the sums with gamma in place of k for C), and dt^2 a + 2 dt b <= 4 with a, b their largest
+ * eigenvalues suffices. Any s > 0 is allowed, the same for all contacts; s = 1 is exact for two
+ * equal spheres, limit_share is better in beds. The weights m^(-1/2) in place of 1/m keep the bound
  * near the truth where many small spheres lie on a large one.
  *
- * Pair-centred dashpots divide k and gamma by 1 + gamma dt/(2 m*), tangential 1 + 3.5 gamma dt/(2 m*): a larger dt is allowed the larger the dt
- * that is put in there, so the bound holds for dt if it gives at least dt with dt put in.
+ * Pair-centred dashpots divide k and gamma by 1 + gamma dt/(2 m*), tangential 1 + 3.5 gamma dt/(2
+ * m*): a larger dt is allowed the larger the dt that is put in there, so the bound holds for dt if
+ * it gives at least dt with dt put in.
  *
- * Not in it: CDT rolling (a moment of bounded size: it can chatter, not blow up), sliding (below the spring that it replaces), tension of bonds,
- * F/d against k_n: the share of a per cent that `safety` covers.
+ * Not in it: CDT rolling (a moment of bounded size: it can chatter, not blow up), sliding (below
+ * the spring that it replaces), tension of bonds, F/d against k_n: the share of a per cent that
+ * `safety` covers.
  * Wants the features of pairs and walls together, all WITH_ flags defined. Knows no lists. */
 #ifndef DEMOCLES_LAW_LIMIT_H
 #define DEMOCLES_LAW_LIMIT_H
@@ -88,9 +96,11 @@ LAW struct limit_matrix limit_matrix_square(struct limit_matrix a)
     return b;
 }
 
-/* Largest eigenvalue of a matrix that has none below zero, from above, without trigonometry: it is at most ||A^4||_F^(1/4), 3^(1/8) too large
- * at worst; Laguerre's method on det(x - A), whose roots are all real, comes down from there and never passes the root. After LIMIT_STEPS the
- * rest is below 3e-4 (two equal roots), mostly nothing; in float up to 3 LIMIT_NOISE^(1/3) = 2.4e-2 where three roots are nearly equal. */
+/* Largest eigenvalue of a matrix that has none below zero, from above, without trigonometry: it is
+ * at most ||A^4||_F^(1/4), 3^(1/8) too large at worst; Laguerre's method on det(x - A), whose roots
+ * are all real, comes down from there and never passes the root. After LIMIT_STEPS the rest is
+ * below 3e-4 (two equal roots), mostly nothing; in float up to 3 LIMIT_NOISE^(1/3) = 2.4e-2 where
+ * three roots are nearly equal. */
 LAW real limit_largest(struct limit_matrix a, int steps)
 {
     real trace = a.xx + a.yy + a.zz;
@@ -106,11 +116,14 @@ LAW real limit_largest(struct limit_matrix a, int steps)
     b.xz = scale * a.xz;
     b.yz = scale * a.yz;
     c = limit_matrix_square(limit_matrix_square(b));
-    x = c.xx * c.xx + c.yy * c.yy + c.zz * c.zz + (real)2 * (c.xy * c.xy + c.xz * c.xz + c.yz * c.yz);
+    x = c.xx * c.xx + c.yy * c.yy + c.zz * c.zz +
+        (real)2 * (c.xy * c.xy + c.xz * c.xz + c.yz * c.yz);
     x = r_sqrt(r_sqrt(r_sqrt(x)));
     minors = b.xx * b.yy - b.xy * b.xy + b.xx * b.zz - b.xz * b.xz + b.yy * b.zz - b.yz * b.yz;
-    det = b.xx * (b.yy * b.zz - b.yz * b.yz) - b.xy * (b.xy * b.zz - b.yz * b.xz) + b.xz * (b.xy * b.yz - b.yy * b.xz);
-    for (int k = 0; k < steps; k++) { /* det(x - B) = x^3 - x^2 + minors x - det: the trace of B is 1 */
+    det = b.xx * (b.yy * b.zz - b.yz * b.yz) - b.xy * (b.xy * b.zz - b.yz * b.xz) +
+          b.xz * (b.xy * b.yz - b.yy * b.xz);
+    /* det(x - B) = x^3 - x^2 + minors x - det: the trace of B is 1 */
+    for (int k = 0; k < steps; k++) {
         real p = r_max(((x - (real)1) * x + minors) * x - det - LIMIT_NOISE, (real)0);
         real p1 = ((real)3 * x - (real)2) * x + minors;
         real p2 = (real)6 * x - (real)2;
@@ -123,7 +136,8 @@ LAW real limit_largest(struct limit_matrix a, int steps)
     return trace * x;
 }
 
-/* q^(1/5) from above: 1/5 = 3/16 (1 + 1/16 + 1/256 + ...) by square roots, then a Newton step, which ends above the root of a convex function. */
+/* q^(1/5) from above: 1/5 = 3/16 (1 + 1/16 + 1/256 + ...) by square roots, then a Newton step,
+ * which ends above the root of a convex function. */
 LAW real limit_fifth_root(real q)
 {
     real eighth = r_sqrt(r_sqrt(r_sqrt(q)));
@@ -134,29 +148,40 @@ LAW real limit_fifth_root(real q)
     return y4 > 0 ? (real)0.2 * ((real)4 * y + q / y4) : (real)0;
 }
 
-LAW int limit_is_hertz(struct contact_material c) { return WITH_HERTZ && (!WITH_LINEAR || (c.law & CONTACT_HERTZ) != 0); }
+LAW int limit_is_hertz(struct contact_material c)
+{
+    return WITH_HERTZ && (!WITH_LINEAR || (c.law & CONTACT_HERTZ) != 0);
+}
 
-LAW real limit_r_star(struct limit_ends e) { return e.r_j > 0 ? e.r_i * e.r_j / (e.r_i + e.r_j) : e.r_i; }
+LAW real limit_r_star(struct limit_ends e)
+{
+    return e.r_j > 0 ? e.r_i * e.r_j / (e.r_i + e.r_j) : e.r_i;
+}
 
 /* Whether the contact acts: touches, or is near enough to be bonded. */
 LAW int limit_acts(struct contact_material c, struct limit_ends e, real delta)
 {
     real apart = r_abs(delta);
-    real spring = limit_is_hertz(c) ? c.k_n * r_sqrt(limit_r_star(e) * apart) * apart : c.k_n * apart;
+    real spring =
+        limit_is_hertz(c) ? c.k_n * r_sqrt(limit_r_star(e) * apart) * apart : c.k_n * apart;
     return delta > 0 || (WITH_BINDING && c.f_b > 0 && spring <= c.f_b);
 }
 
-/* Root of the overlap at which a Hertz contact is taken, since it stiffens: where the two bodies alone would come to rest,
+/* Root of the overlap at which a Hertz contact is taken, since it stiffens: where the two bodies
+ * alone would come to rest,
  *     (2/5) K delta_m^(5/2) = (2/5) K |delta|^(5/2) + m* v_n^2/2. */
 LAW real limit_overlap_root(real stiffness, real m_star, real delta, real v_n)
 {
     real now = r_sqrt(r_abs(delta));
-    real later = limit_fifth_root(now * now * now * now * now + (real)1.25 * m_star * v_n * v_n / stiffness);
+    real later =
+        limit_fifth_root(now * now * now * now * now + (real)1.25 * m_star * v_n * v_n / stiffness);
     return r_max(now, later);
 }
 
-/* delta [m], v_n: approach speed [m/s], of receding bodies without a bond 0 counts; dt [s] for the pair-centred dashpots, 0: none. */
-LAW struct limit_contact limit_contact_of(struct contact_material c, struct limit_ends e, real delta, real v_n, real dt)
+/* delta [m], v_n: approach speed [m/s], of receding bodies without a bond 0 counts; dt [s] for the
+ * pair-centred dashpots, 0: none. */
+LAW struct limit_contact limit_contact_of(
+    struct contact_material c, struct limit_ends e, real delta, real v_n, real dt)
 {
     struct limit_contact k;
     int hertz = limit_is_hertz(c);
@@ -164,10 +189,13 @@ LAW struct limit_contact limit_contact_of(struct contact_material c, struct limi
     real m_star = (real)1 / inverse_m;
     real r_star = limit_r_star(e);
     real size = hertz ? r_sqrt(r_star) : (real)1;
-    real root = hertz ? limit_overlap_root(size * c.k_n, m_star, delta, v_n > 0 || c.f_b > 0 ? v_n : (real)0) : (real)1;
+    real root = hertz ? limit_overlap_root(
+                            size * c.k_n, m_star, delta, v_n > 0 || c.f_b > 0 ? v_n : (real)0)
+                      : (real)1;
     real damper = r_sqrt(size * m_star * root);
     real per_radius = e.r_j > 0 ? (real)0.5 / r_min(e.r_i, e.r_j) : (real)1 / e.r_i;
-    real lever = r_max(r_abs((real)1 - delta * per_radius), (real)1); /* bonds that are apart; spheres that have swallowed a smaller one */
+    /* bonds that are apart; spheres that have swallowed a smaller one */
+    real lever = r_max(r_abs((real)1 - delta * per_radius), (real)1);
     real damp_n = (real)1 / ((real)1 + (real)0.5 * damper * c.gamma_n * dt * inverse_m);
     real damp_t = (real)1 / ((real)1 + (real)1.75 * damper * c.gamma_t * dt * inverse_m);
 
@@ -178,7 +206,8 @@ LAW struct limit_contact limit_contact_of(struct contact_material c, struct limi
     k.gamma_t = WITH_TANGENTIAL_DAMPING ? damper * c.gamma_t * damp_t : (real)0;
     k.k_r = k.c_r = 0;
     if (WITH_ROLLING_EPSD) {
-        real i_star = (real)1 / (e.w_i / (e.r_i * e.r_i) + (e.r_j > 0 ? e.w_j / (e.r_j * e.r_j) : (real)0));
+        real i_star =
+            (real)1 / (e.w_i / (e.r_i * e.r_i) + (e.r_j > 0 ? e.w_j / (e.r_j * e.r_j) : (real)0));
         k.k_r = size * r_star * r_star * c.k_r * root;
         k.c_r = r_star * r_sqrt(size * i_star * root) * c.c_r;
     }
@@ -201,7 +230,8 @@ LAW real limit_spin_mobility(struct limit_ends e)
 }
 
 /* Adds a contact of element i with unit normal n; share: s. */
-LAW struct limit_sums limit_sums_add(struct limit_sums s, struct limit_contact c, struct limit_ends e, vec3 n, real share)
+LAW struct limit_sums limit_sums_add(
+    struct limit_sums s, struct limit_contact c, struct limit_ends e, vec3 n, real share)
 {
     real p = limit_mobility(e), q = WITH_ROLLING_EPSD ? limit_spin_mobility(e) : (real)0;
     real across = p * c.stretch * ((real)1 + (real)2.5 * share), turn = across / share;
@@ -214,7 +244,8 @@ LAW struct limit_sums limit_sums_add(struct limit_sums s, struct limit_contact c
     return s;
 }
 
-/* The share s that makes T and R equal in an isotropic bed of contacts with k_t/k_n = kappa (tangent stiffnesses); 1 without friction. */
+/* The share s that makes T and R equal in an isotropic bed of contacts with k_t/k_n = kappa
+ * (tangent stiffnesses); 1 without friction. */
 LAW real limit_share(real kappa)
 {
     real b = kappa > 0 ? (real)0.5 / kappa - (real)1.5 : (real)-1.5;
@@ -239,8 +270,8 @@ LAW real limit_of_sums_to(struct limit_sums s, int steps)
     return LIMIT_ROUNDING * least;
 }
 
-/* The bound of one element; a quick lower one if that is already above `enough`. Since eigenvalues only come down, the minimum of several
- * elements has the same bits whatever is known before. */
+/* The bound of one element; a quick lower one if that is already above `enough`. Since eigenvalues
+ * only come down, the minimum of several elements has the same bits whatever is known before. */
 LAW real limit_of_sums(struct limit_sums s, real enough)
 {
     real quick = limit_of_sums_to(s, 0);

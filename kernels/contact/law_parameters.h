@@ -1,11 +1,14 @@
 /* What a contact needs to know of its two materials and sizes.
  *
- * Two steps, so that equal spheres pay nothing: contact_material holds what the two materials say, whatever the sizes; contact_parameters is
- * that for one effective mass and radius, constant during the run. Scenes of one size compute the latter once on the host, others in the
- * kernel (one square root or two and two divisions).
+ * Two steps, so that equal spheres pay nothing: contact_material holds what the two materials say,
+ * whatever the sizes; contact_parameters is that for one effective mass and radius, constant during
+ * the run. Scenes of one size compute the latter once on the host, others in the kernel (one square
+ * root or two and two divisions).
  *
- * One set of members serves both normal laws. With s = 1 (linear) or s = delta^(1/2) (Hertz), and s^(1/2) = 1 or delta^(1/4):
- *     spring k_n s delta, normal dashpot gamma_n s^(1/2), tangential spring k_t s, tangential dashpot gamma_t s^(1/2), rolling spring k_r s.
+ * One set of members serves both normal laws. With s = 1 (linear) or s = delta^(1/2) (Hertz), and
+ * s^(1/2) = 1 or delta^(1/4):
+ *     spring k_n s delta, normal dashpot gamma_n s^(1/2), tangential spring k_t s, tangential
+ *       dashpot gamma_t s^(1/2), rolling spring k_r s.
  * Knows no scene and no element. All WITH_ flags must be defined, 0 or 1. */
 #ifndef DEMOCLES_LAW_PARAMETERS_H
 #define DEMOCLES_LAW_PARAMETERS_H
@@ -50,14 +53,17 @@ struct contact_parameters {
     real mu;         /* [1] */
     real f_b;        /* [N] */
     real roll_limit; /* mu_r R* [m] */
-    real roll_stop;  /* CDT: 1/(dt (1/I_i + 1/I_j)) [N m s]: the moment per relative spin that would stop it within one step */
-    real k_r;        /* EPSD: [N m] / [N m^0.5]; 0: CDT */
-    real c_r;        /* EPSD: [N m s] / [N m^0.75 s] */
-    int law;         /* CONTACT_ bits */
+    /* CDT: 1/(dt (1/I_i + 1/I_j)) [N m s]: the moment per relative spin that would stop it within
+     * one step */
+    real roll_stop;
+    real k_r; /* EPSD: [N m] / [N m^0.5]; 0: CDT */
+    real c_r; /* EPSD: [N m s] / [N m^0.75 s] */
+    int law;  /* CONTACT_ bits */
 };
 
 /* k_n [N/m], damping ratios z [1], k_t/k_n [1]. Friction, binding and rolling are off. */
-LAW struct contact_material contact_material_linear(real k_n, real z_n, real stiffness_ratio, real z_t)
+LAW struct contact_material contact_material_linear(
+    real k_n, real z_n, real stiffness_ratio, real z_t)
 {
     struct contact_material c;
     c.k_n = k_n;
@@ -69,9 +75,12 @@ LAW struct contact_material contact_material_linear(real k_n, real z_n, real sti
     return c;
 }
 
-/* 1/E* = (1 - nu_i^2)/E_i + (1 - nu_j^2)/E_j, 1/G* = (2 - nu_i)/G_i + (2 - nu_j)/G_j [Pa] (rigid partner: its term is 0).
- * stiffness_ratio: k_t over the tangent k_n = 2 E* (R* delta)^(1/2), at all overlaps; negative: Mindlin's 4 G_star/E_star. */
-LAW struct contact_material contact_material_hertz(real e_star, real g_star, real z_n, real stiffness_ratio, real z_t)
+/* 1/E* = (1 - nu_i^2)/E_i + (1 - nu_j^2)/E_j, 1/G* = (2 - nu_i)/G_i + (2 - nu_j)/G_j [Pa] (rigid
+ * partner: its term is 0).
+ * stiffness_ratio: k_t over the tangent k_n = 2 E* (R* delta)^(1/2), at all overlaps; negative:
+ * Mindlin's 4 G_star/E_star. */
+LAW struct contact_material contact_material_hertz(
+    real e_star, real g_star, real z_n, real stiffness_ratio, real z_t)
 {
     struct contact_material c = contact_material_linear((real)4 / (real)3 * e_star, z_n, 0, 0);
     c.k_t = stiffness_ratio < 0 ? (real)8 * g_star : (real)2 * stiffness_ratio * e_star;
@@ -81,9 +90,11 @@ LAW struct contact_material contact_material_hertz(real e_star, real g_star, rea
     return c;
 }
 
-/* CDT: only mu_r [1]. EPSD: k_r = ratio k_n (mu_r R*)^2 with the tangent k_n (ratio 2.25 by Ai et al. 2011; 0 chooses CDT), and
- * C_r = 2 eta (k_r I_r)^(1/2), 1/I_r = 1/(1.4 m_i r_i^2) + 1/(1.4 m_j r_j^2). */
-LAW struct contact_material contact_material_rolling(struct contact_material c, real mu_r, real ratio, real eta)
+/* CDT: only mu_r [1]. EPSD: k_r = ratio k_n (mu_r R*)^2 with the tangent k_n (ratio 2.25 by Ai et
+ * al. 2011; 0 chooses CDT), and C_r = 2 eta (k_r I_r)^(1/2), 1/I_r = 1/(1.4 m_i r_i^2) + 1/(1.4 m_j
+ * r_j^2). */
+LAW struct contact_material contact_material_rolling(
+    struct contact_material c, real mu_r, real ratio, real eta)
 {
     real tangent = c.law & CONTACT_HERTZ ? (real)1.5 * c.k_n : c.k_n;
     c.mu_r = mu_r;
@@ -99,7 +110,8 @@ LAW struct contact_pair contact_pair_of(real inverse_m_i, real inverse_m_j, real
     s.m_star = (real)1 / (inverse_m_i + inverse_m_j);
     s.r_star = r_i * r_j / (r_i + r_j);
     s.i_star = 0;
-    if (WITH_ROLLING_CDT || WITH_ROLLING_EPSD) s.i_star = (real)1 / (inverse_m_i / (r_i * r_i) + inverse_m_j / (r_j * r_j));
+    if (WITH_ROLLING_CDT || WITH_ROLLING_EPSD)
+        s.i_star = (real)1 / (inverse_m_i / (r_i * r_i) + inverse_m_j / (r_j * r_j));
     return s;
 }
 
@@ -114,7 +126,8 @@ LAW struct contact_pair contact_pair_wall(real inverse_m, real r)
 }
 
 /* dt [s]. Members that no compiled feature uses may hold anything finite. */
-LAW struct contact_parameters contact_parameters_of(struct contact_material c, struct contact_pair s, real dt)
+LAW struct contact_parameters contact_parameters_of(
+    struct contact_material c, struct contact_pair s, real dt)
 {
     struct contact_parameters p;
     real size = WITH_HERTZ && (!WITH_LINEAR || c.law & CONTACT_HERTZ) ? r_sqrt(s.r_star) : (real)1;

@@ -1,8 +1,11 @@
-/* Rolling resistance: a moment M on i, -M on j, against the relative rolling w_r = the part of w_i - w_j in the tangent plane.
+/* Rolling resistance: a moment M on i, -M on j, against the relative rolling w_r = the part of w_i
+ * - w_j in the tangent plane.
  *
- * CDT   M = -L w_r/|w_r|, L = mu_r R* F_n (Ai et al. 2011, Powder Technol. 206, 269). It would chatter about zero; here it is at most what stops
+ * CDT   M = -L w_r/|w_r|, L = mu_r R* F_n (Ai et al. 2011, Powder Technol. 206, 269). It would
+ * chatter about zero; here it is at most what stops
  *       the relative spin of the two free bodies in one step, M = -w_r/(dt (1/I_i + 1/I_j)).
- * EPSD  M = -k_r theta - C_r w_r, |k_r theta| <= L, theta the rolling angle, carried and cut like the friction spring (law_slider.h);
+ * EPSD  M = -k_r theta - C_r w_r, |k_r theta| <= L, theta the rolling angle, carried and cut like
+ * the friction spring (law_slider.h);
  *       the whole of M is kept within L.
  * A pair with k_r = 0 takes CDT; mu_r = 0 gives no moment. */
 #ifndef DEMOCLES_LAW_ROLLING_H
@@ -11,7 +14,10 @@
 #include "law_normal.h"
 #include "law_slider.h"
 
-LAW real rolling_cap(real force_n, struct contact_parameters p) { return p.roll_limit * r_max(force_n, (real)0); }
+LAW real rolling_cap(real force_n, struct contact_parameters p)
+{
+    return p.roll_limit * r_max(force_n, (real)0);
+}
 
 LAW vec3 rolling_cdt(vec3 w_r, real cap, struct contact_parameters p)
 {
@@ -22,9 +28,11 @@ LAW vec3 rolling_cdt(vec3 w_r, real cap, struct contact_parameters p)
 }
 
 /* trial: theta carried to t^{n+1}, zero where there is no contact. */
-LAW struct slider rolling_epsd(vec3 trial, vec3 w_r_end, real cap, struct normal_factors f, struct contact_parameters p)
+LAW struct slider rolling_epsd(
+    vec3 trial, vec3 w_r_end, real cap, struct normal_factors f, struct contact_parameters p)
 {
-    return slider_slip(trial, p.k_r * f.spring, 1, v3_scale(-(p.c_r * f.damper), w_r_end), (real)1, cap);
+    return slider_slip(
+        trial, p.k_r * f.spring, 1, v3_scale(-(p.c_r * f.damper), w_r_end), (real)1, cap);
 }
 
 #endif

@@ -1,18 +1,26 @@
-/* A spring in series with a slider, and a dashpot beside the spring: friction and rolling resistance are both of this kind.
+/* A spring in series with a slider, and a dashpot beside the spring: friction and rolling
+ * resistance are both of this kind.
  *
- * Trial, then slip: T = -k x. |T| <= cap: the force is T with the dashpot, shortened to the cap. |T| > cap: the force is the cap along T,
- * without dashpot, and the spring is cut to it, so that it never holds more than cap^2/(2 k). One square root, one division.
+ * Trial, then slip: T = -k x. |T| <= cap: the force is T with the dashpot, shortened to the cap.
+ * |T| > cap: the force is the cap along T, without dashpot, and the spring is cut to it, so that it
+ * never holds more than cap^2/(2 k). One square root, one division.
  *
- * The spring lies in the tangent plane and turns with it. For x perpendicular to n_old the rotation of n_old into n is
+ * The spring lies in the tangent plane and turns with it. For x perpendicular to n_old the rotation
+ * of n_old into n is
  *     x' = x - (n.x) (n + n_old)/(1 + n.n_old),
- * and with n_half in the middle (n + n_old)/(1 + n.n_old) = n_half/(n.n_half), here n_half + (1 - n.n_half) n, called `turn`: no square
- * root, no division, x' is perpendicular to n to rounding for any n_half, and its part along the motion is shortened by angle^4/16 per step (by
- * O(angle^2 v_n dt/d) if the distance changes). The increment, perpendicular to n_half, goes the same way with an error of third order.
+ * and with n_half in the middle (n + n_old)/(1 + n.n_old) = n_half/(n.n_half), here n_half + (1 -
+ * n.n_half) n, called `turn`: no square root, no division, x' is perpendicular to n to rounding for
+ * any n_half, and its part along the motion is shortened by angle^4/16 per step (by O(angle^2 v_n
+ * dt/d) if the distance changes). The increment, perpendicular to n_half, goes the same way with an
+ * error of third order.
  *
- * Springs whose stiffness follows the overlap (Mindlin: k = c delta^(1/2)) must not gain energy from that. While the load grows the force is
- * kept, T' = T - (mean k) dx; while it falls the displacement is, T' = T k'/k - k' dx. Storing x = -T/k with r = k/k' this is
- *     x' = keep x + gain dx,   growing (r < 1): keep = r, gain = (mean k)/k';   falling: keep = gain = 1.
- * For delta linear in time (mean k)/k' = (2/3)(1 + r + r^2)/(1 + r); (4 + r + r^2)/6 equals it at r = 0 (onset) and to second order at 1. */
+ * Springs whose stiffness follows the overlap (Mindlin: k = c delta^(1/2)) must not gain energy
+ * from that. While the load grows the force is kept, T' = T - (mean k) dx; while it falls the
+ * displacement is, T' = T k'/k - k' dx. Storing x = -T/k with r = k/k' this is
+ *     x' = keep x + gain dx,   growing (r < 1): keep = r, gain = (mean k)/k';   falling: keep =
+ *       gain = 1.
+ * For delta linear in time (mean k)/k' = (2/3)(1 + r + r^2)/(1 + r); (4 + r + r^2)/6 equals it at r
+ * = 0 (onset) and to second order at 1. */
 #ifndef DEMOCLES_LAW_SLIDER_H
 #define DEMOCLES_LAW_SLIDER_H
 
@@ -36,7 +44,8 @@ struct slider {
 };
 
 /* s: overlap factor at t^{n+1}, delta^(1/2) for Hertz; time: part of dt in contact [s]. */
-LAW struct slider_carry slider_carry_of(struct contact_kinematics k, int hertz, real s, real time, real dt)
+LAW struct slider_carry slider_carry_of(
+    struct contact_kinematics k, int hertz, real s, real time, real dt)
 {
     struct slider_carry c;
 
@@ -47,7 +56,8 @@ LAW struct slider_carry slider_carry_of(struct contact_kinematics k, int hertz, 
         real old = r_fma(-k.v_n_half, dt, k.delta); /* overlap at t^n */
         real before = r_sqrt(r_abs(old));
         real ratio = before / r_max(s, SLIDER_TINY);
-        real keep = (old < 0) != (k.delta < 0) ? (real)0 : r_min(ratio, (real)1); /* unloaded in between: the force was lost */
+        /* unloaded in between: the force was lost */
+        real keep = (old < 0) != (k.delta < 0) ? (real)0 : r_min(ratio, (real)1);
         c.before = hertz ? before : (real)1;
         c.keep = hertz ? keep : (real)1;
         c.gain = hertz ? r_fma(keep, keep, keep + (real)4) * ((real)1 / (real)6) : (real)1;
@@ -62,8 +72,9 @@ LAW vec3 slider_trial(vec3 spring, vec3 rate, struct slider_carry c, vec3 n)
     return v3_fma(-v3_dot(n, x), c.turn, x);
 }
 
-/* trial: from slider_trial; k: stiffness; dashpot: its force, zero where there is none (damped = 0); damp: 1/(1 + gamma dt/(2 m)), which brings
- * the dashpot from the half step to t^{n+1}; cap >= 0: largest force. */
+/* trial: from slider_trial; k: stiffness; dashpot: its force, zero where there is none (damped =
+ * 0); damp: 1/(1 + gamma dt/(2 m)), which brings the dashpot from the half step to t^{n+1}; cap >=
+ * 0: largest force. */
 LAW struct slider slider_slip(vec3 trial, real k, int damped, vec3 dashpot, real damp, real cap)
 {
     struct slider r;
@@ -83,15 +94,18 @@ LAW struct slider slider_slip(vec3 trial, real k, int damped, vec3 dashpot, real
     }
     scale = shorten ? cap / r_sqrt(square) : (real)1;
     r.force = v3_scale(scale, u);
-    r.spring = v3(slips ? scale * trial.x : trial.x, slips ? scale * trial.y : trial.y, slips ? scale * trial.z : trial.z);
+    r.spring = v3(slips ? scale * trial.x : trial.x, slips ? scale * trial.y : trial.y,
+        slips ? scale * trial.z : trial.z);
     r.slips = slips;
     return r;
 }
 
-/* What slip, and the change of stiffness, took from the spring in this step [J]: old energy - new energy - work of the spring's force, the
- * latter by the trapezoid of the step. k_old, old: stiffness and spring at t^n; k: at t^{n+1}. Zero to the last bit for a linear spring that
+/* What slip, and the change of stiffness, took from the spring in this step [J]: old energy - new
+ * energy - work of the spring's force, the latter by the trapezoid of the step. k_old, old:
+ * stiffness and spring at t^n; k: at t^{n+1}. Zero to the last bit for a linear spring that
  * sticks. */
-LAW real slider_loss(real k_old, vec3 old, real k, vec3 trial, vec3 spring, vec3 rate, struct slider_carry c)
+LAW real slider_loss(
+    real k_old, vec3 old, real k, vec3 trial, vec3 spring, vec3 rate, struct slider_carry c)
 {
     vec3 dx = v3_scale(c.time, rate);
     vec3 cut = v3_sub(trial, spring);

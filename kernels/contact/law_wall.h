@@ -1,20 +1,25 @@
-/* Where a sphere meets a wall: the closest point of a wall primitive, which of several triangle contacts count, and rigid motion of walls.
- * Values in, values out; the same text runs on host and device. Nothing here knows forces, lists or how many walls there are.
+/* Where a sphere meets a wall: the closest point of a wall primitive, which of several triangle
+ * contacts count, and rigid motion of walls. Values in, values out; the same text runs on host and
+ * device. Nothing here knows forces, lists or how many walls there are.
  *
- * A primitive is a row of 12 preal in the wall's own frame (its position at t = 0), read with WALL_PRIMITIVE(table, k):
+ * A primitive is a row of 12 preal in the wall's own frame (its position at t = 0), read with
+ * WALL_PRIMITIVE(table, k):
  *
  *   kind             a              b                  c                     r              s
  *   WALL_PLANE       point          unit normal m      -                     -              -
- *   WALL_RECTANGLE   centre         unit axis          unit axis             half size (b)  half size (c)
+ *   WALL_RECTANGLE   centre         unit axis          unit axis             half size (b)  half
+ *     size (c)
  *   WALL_PIPE        start of axis  unit axis          unit, across the axis radius         length
  *   WALL_ROD         start of axis  unit axis          unit, across the axis radius         length
  *   WALL_TRIANGLE    corner         corner             corner                -              -
  *
- * One-sided: a plane pushes towards m from any depth, a rod (cylinder with elements outside) is a solid with flat ends and pushes outwards from
- * any depth. Two-sided: rectangle, triangle and pipe (cylinder with elements inside: a thin shell with open ends); they lose a sphere whose
- * centre crosses.
+ * One-sided: a plane pushes towards m from any depth, a rod (cylinder with elements outside) is a
+ * solid with flat ends and pushes outwards from any depth. Two-sided: rectangle, triangle and pipe
+ * (cylinder with elements inside: a thin shell with open ends); they lose a sphere whose centre
+ * crosses.
  *
- * Kinds that a scene does not have are compiled out: WITH_PLANE, WITH_RECTANGLE, WITH_CYLINDER, WITH_TRIANGLE, each 0 or 1. */
+ * Kinds that a scene does not have are compiled out: WITH_PLANE, WITH_RECTANGLE, WITH_CYLINDER,
+ * WITH_TRIANGLE, each 0 or 1. */
 #ifndef DEMOCLES_LAW_WALL_H
 #define DEMOCLES_LAW_WALL_H
 
@@ -46,11 +51,11 @@ struct wall_primitive {
 };
 
 /* A macro, because a row may lie in any address space. */
-#define WALL_PRIMITIVE(table, k)                                                                                                                     \
-    wall_primitive(p3((table)[12 * (k)], (table)[12 * (k) + 1], (table)[12 * (k) + 2]),                                                              \
-        p3((table)[12 * (k) + 3], (table)[12 * (k) + 4], (table)[12 * (k) + 5]),                                                                     \
-        p3((table)[12 * (k) + 6], (table)[12 * (k) + 7], (table)[12 * (k) + 8]), (table)[12 * (k) + 9], (table)[12 * (k) + 10],                      \
-        (int)(table)[12 * (k) + 11])
+#define WALL_PRIMITIVE(table, k)                                                                   \
+    wall_primitive(p3((table)[12 * (k)], (table)[12 * (k) + 1], (table)[12 * (k) + 2]),            \
+        p3((table)[12 * (k) + 3], (table)[12 * (k) + 4], (table)[12 * (k) + 5]),                   \
+        p3((table)[12 * (k) + 6], (table)[12 * (k) + 7], (table)[12 * (k) + 8]),                   \
+        (table)[12 * (k) + 9], (table)[12 * (k) + 10], (int)(table)[12 * (k) + 11])
 
 LAW struct wall_primitive wall_primitive(pvec3 a, pvec3 b, pvec3 c, preal r, preal s, int kind)
 {
@@ -66,11 +71,14 @@ LAW struct wall_primitive wall_primitive(pvec3 a, pvec3 b, pvec3 c, preal r, pre
 
 /* The closest point of a wall, seen from a centre x. */
 struct wall_closest {
-    pvec3 D;        /* closest point minus x = distance n [m] */
-    pvec3 n;        /* unit, from x to the wall; defined at zero distance too */
-    preal distance; /* [m]; negative behind a plane and within a rod. Overlap of a sphere: delta = radius - distance */
-    int feature;    /* triangle: 0 face, 1 edge ab, 2 edge bc, 3 edge ca, 4 corner a, 5 corner b, 6 corner c.
-                     * Others: 0 face, 1 edge or first rim, 2 last rim, 4 corner of a rectangle */
+    pvec3 D; /* closest point minus x = distance n [m] */
+    pvec3 n; /* unit, from x to the wall; defined at zero distance too */
+    /* [m]; negative behind a plane and within a rod. Overlap of a sphere: delta = radius -
+     * distance */
+    preal distance;
+    /* triangle: 0 face, 1 edge ab, 2 edge bc, 3 edge ca, 4 corner a, 5 corner b, 6 corner c;
+     * others: 0 face, 1 edge or first rim, 2 last rim, 4 corner of a rectangle */
+    int feature;
 };
 
 /* From D alone: the two-sided surfaces. `fallback` is n where the centre lies on the surface. */
@@ -106,7 +114,8 @@ LAW struct wall_closest wall_closest_plane(struct wall_primitive w, pvec3 x)
     return wall_one_sided(p3_dot(p3_sub(x, w.a), w.b), p3_scale((preal)-1, w.b));
 }
 
-/* In the frame of the two axes and their normal the closest point is a clamp; in-plane parts of D are exactly zero over the face. */
+/* In the frame of the two axes and their normal the closest point is a clamp; in-plane parts of D
+ * are exactly zero over the face. */
 LAW struct wall_closest wall_closest_rectangle(struct wall_primitive w, pvec3 x)
 {
     pvec3 q = p3_sub(x, w.a), m = p3_cross(w.b, w.c);
@@ -117,8 +126,9 @@ LAW struct wall_closest wall_closest_rectangle(struct wall_primitive w, pvec3 x)
     return wall_two_sided(D, m, off == 2 ? 4 : off);
 }
 
-/* Cylindrical coordinates: z along the axis, rho from it, e the unit vector outwards; beyond = how far z lies past the nearer end (negative:
- * between the ends), `end` the unit vector out of that end. Past an end the closest point of a pipe is on its rim. */
+/* Cylindrical coordinates: z along the axis, rho from it, e the unit vector outwards; beyond = how
+ * far z lies past the nearer end (negative: between the ends), `end` the unit vector out of that
+ * end. Past an end the closest point of a pipe is on its rim. */
 LAW struct wall_closest wall_closest_cylinder(struct wall_primitive w, pvec3 x)
 {
     pvec3 q = p3_sub(x, w.a);
@@ -139,12 +149,15 @@ LAW struct wall_closest wall_closest_cylinder(struct wall_primitive w, pvec3 x)
     return wall_two_sided(D, e, past ? 1 + last : 0);
 }
 
-/* Closest point a + v ab + w ac by Voronoi regions (Ericson, Real-Time Collision Detection, 2005, section 5.1.5). The regions select numerators
- * and one denominator, so that there is a single path. */
+/* Closest point a + v ab + w ac by Voronoi regions (Ericson, Real-Time Collision Detection, 2005,
+ * section 5.1.5). The regions select numerators and one denominator, so that there is a single
+ * path. */
 LAW struct wall_closest wall_closest_triangle(struct wall_primitive t, pvec3 x)
 {
-    pvec3 ab = p3_sub(t.b, t.a), ac = p3_sub(t.c, t.a), ap = p3_sub(x, t.a), bp = p3_sub(x, t.b), cp = p3_sub(x, t.c);
-    preal d1 = p3_dot(ab, ap), d2 = p3_dot(ac, ap), d3 = p3_dot(ab, bp), d4 = p3_dot(ac, bp), d5 = p3_dot(ab, cp), d6 = p3_dot(ac, cp);
+    pvec3 ab = p3_sub(t.b, t.a), ac = p3_sub(t.c, t.a), ap = p3_sub(x, t.a), bp = p3_sub(x, t.b),
+          cp = p3_sub(x, t.c);
+    preal d1 = p3_dot(ab, ap), d2 = p3_dot(ac, ap), d3 = p3_dot(ab, bp), d4 = p3_dot(ac, bp),
+          d5 = p3_dot(ab, cp), d6 = p3_dot(ac, cp);
     preal va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
     preal e4 = d4 - d3, e5 = d5 - d6; /* along bc from b, and from c */
     preal nv = vb, nw = vc, den = va + vb + vc;
@@ -204,28 +217,34 @@ LAW struct wall_closest wall_closest(struct wall_primitive w, pvec3 x)
 {
     if (WITH_PLANE && w.kind == WALL_PLANE) return wall_closest_plane(w, x);
     if (WITH_RECTANGLE && w.kind == WALL_RECTANGLE) return wall_closest_rectangle(w, x);
-    if (WITH_CYLINDER && (w.kind == WALL_PIPE || w.kind == WALL_ROD)) return wall_closest_cylinder(w, x);
+    if (WITH_CYLINDER && (w.kind == WALL_PIPE || w.kind == WALL_ROD))
+        return wall_closest_cylinder(w, x);
     if (WITH_TRIANGLE && w.kind == WALL_TRIANGLE) return wall_closest_triangle(w, x);
-    return wall_one_sided(WALL_FAR, p3(0, 0, 1)); /* a kind that this program was built without: out of reach */
+    /* a kind that this program was built without: out of reach */
+    return wall_one_sided(WALL_FAR, p3(0, 0, 1));
 }
 
-/* One contact per local minimum of the distance. A sphere over a mesh sees several triangles; over all candidates of one element and one wall, in
- * ascending order of triangles:
+/* One contact per local minimum of the distance. A sphere over a mesh sees several triangles; over
+ * all candidates of one element and one wall, in ascending order of triangles:
  *   1. wall_closest of every candidate;
  *   2. drop candidate t if a candidate s has wall_hides(s, t);
  *   3. of those left drop t if a lower one, itself left, has wall_coincides with it.
- * What stays are the contacts (where distance < radius, or a bond holds). Candidates further away than t can neither hide it nor coincide with
- * it, so the answer does not depend on how far the list reaches.
+ * What stays are the contacts (where distance < radius, or a bond holds). Candidates further away
+ * than t can neither hide it nor coincide with it, so the answer does not depend on how far the
+ * list reaches.
  *
- * A shared edge or vertex has one number in the whole mesh; edges and vertices are numbered together and never alike. */
+ * A shared edge or vertex has one number in the whole mesh; edges and vertices are numbered
+ * together and never alike. */
 struct wall_features {
     int edge_ab, edge_bc, edge_ca, corner_a, corner_b, corner_c;
 };
 
-#define WALL_FEATURES(table, k)                                                                                                                      \
-    wall_features((table)[6 * (k)], (table)[6 * (k) + 1], (table)[6 * (k) + 2], (table)[6 * (k) + 3], (table)[6 * (k) + 4], (table)[6 * (k) + 5])
+#define WALL_FEATURES(table, k)                                                                    \
+    wall_features((table)[6 * (k)], (table)[6 * (k) + 1], (table)[6 * (k) + 2],                    \
+        (table)[6 * (k) + 3], (table)[6 * (k) + 4], (table)[6 * (k) + 5])
 
-LAW struct wall_features wall_features(int edge_ab, int edge_bc, int edge_ca, int corner_a, int corner_b, int corner_c)
+LAW struct wall_features wall_features(
+    int edge_ab, int edge_bc, int edge_ca, int corner_a, int corner_b, int corner_c)
 {
     struct wall_features f;
     f.edge_ab = edge_ab;
@@ -237,8 +256,9 @@ LAW struct wall_features wall_features(int edge_ab, int edge_bc, int edge_ca, in
     return f;
 }
 
-/* Distances that differ by less than WALL_TIE radius are equal; points closer than WALL_MERGE radius are one. Near a foot point distances are of
- * second order, so WALL_MERGE > 2 sqrt(2 tie), where tie is at least the rounding error of a distance to a triangle of 100 radii. */
+/* Distances that differ by less than WALL_TIE radius are equal; points closer than WALL_MERGE
+ * radius are one. Near a foot point distances are of second order, so WALL_MERGE > 2 sqrt(2 tie),
+ * where tie is at least the rounding error of a distance to a triangle of 100 radii. */
 #if POSITION_IS_FLOAT
 #define WALL_TIE 1e-6f
 #define WALL_MERGE 1e-2f
@@ -258,14 +278,17 @@ LAW int wall_feature_number(struct wall_features f, int feature)
 /* Whether a triangle with features f has the edge or vertex of that number. */
 LAW int wall_shares(struct wall_features f, int number)
 {
-    return number >= 0 && (f.edge_ab == number || f.edge_bc == number || f.edge_ca == number || f.corner_a == number || f.corner_b == number ||
-                              f.corner_c == number);
+    return number >= 0 && (f.edge_ab == number || f.edge_bc == number || f.edge_ca == number ||
+                              f.corner_a == number || f.corner_b == number || f.corner_c == number);
 }
 
-/* Whether triangle s leads nearer to the centre than t's closest edge or vertex, which s shares: then t's closest point is no local minimum. */
-LAW int wall_hides(struct wall_closest s, struct wall_features s_features, struct wall_closest t, struct wall_features t_features, preal radius)
+/* Whether triangle s leads nearer to the centre than t's closest edge or vertex, which s shares:
+ * then t's closest point is no local minimum. */
+LAW int wall_hides(struct wall_closest s, struct wall_features s_features, struct wall_closest t,
+    struct wall_features t_features, preal radius)
 {
-    return s.distance < t.distance - WALL_TIE * radius && wall_shares(s_features, wall_feature_number(t_features, t.feature));
+    return s.distance < t.distance - WALL_TIE * radius &&
+           wall_shares(s_features, wall_feature_number(t_features, t.feature));
 }
 
 /* Whether two closest points of one wall are the same point of the surface. */
@@ -276,9 +299,11 @@ LAW int wall_coincides(struct wall_closest s, struct wall_closest t, preal radiu
     return p3_dot(gap, gap) < reach * reach;
 }
 
-/* History passes from one triangle to the next as a sphere moves over a mesh, or friction would restart at every edge. The contact that begins
- * takes the spring of one that ended in the same step, on a triangle with a common vertex, if the normals agree: cos > 0.9. Of several the largest
- * cosine, then the lowest triangle; an old contact gives its history away once. Normals in the same frame. */
+/* History passes from one triangle to the next as a sphere moves over a mesh, or friction would
+ * restart at every edge. The contact that begins takes the spring of one that ended in the same
+ * step, on a triangle with a common vertex, if the normals agree: cos > 0.9. Of several the largest
+ * cosine, then the lowest triangle; an old contact gives its history away once. Normals in the same
+ * frame. */
 LAW int wall_is_neighbour(struct wall_features s, struct wall_features t)
 {
     return wall_shares(s, t.corner_a) || wall_shares(s, t.corner_b) || wall_shares(s, t.corner_c);
@@ -294,12 +319,21 @@ struct wall_frame {
     pvec3 row_x, row_y, row_z, t;
 };
 
-LAW pvec3 wall_turn(struct wall_frame f, pvec3 d) { return p3(p3_dot(f.row_x, d), p3_dot(f.row_y, d), p3_dot(f.row_z, d)); }
+LAW pvec3 wall_turn(struct wall_frame f, pvec3 d)
+{
+    return p3(p3_dot(f.row_x, d), p3_dot(f.row_y, d), p3_dot(f.row_z, d));
+}
 
-LAW pvec3 wall_turn_back(struct wall_frame f, pvec3 d) { return p3_fma(d.x, f.row_x, p3_fma(d.y, f.row_y, p3_scale(d.z, f.row_z))); }
+LAW pvec3 wall_turn_back(struct wall_frame f, pvec3 d)
+{
+    return p3_fma(d.x, f.row_x, p3_fma(d.y, f.row_y, p3_scale(d.z, f.row_z)));
+}
 
 LAW pvec3 wall_to_world(struct wall_frame f, pvec3 q) { return p3_add(wall_turn(f, q), f.t); }
-LAW pvec3 wall_to_reference(struct wall_frame f, pvec3 p) { return wall_turn_back(f, p3_sub(p, f.t)); }
+LAW pvec3 wall_to_reference(struct wall_frame f, pvec3 p)
+{
+    return wall_turn_back(f, p3_sub(p, f.t));
+}
 
 /* The closest point of a primitive in world coordinates. */
 LAW struct wall_closest wall_closest_moved(struct wall_primitive w, struct wall_frame f, pvec3 x)
@@ -310,8 +344,12 @@ LAW struct wall_closest wall_closest_moved(struct wall_primitive w, struct wall_
     return k;
 }
 
-/* Velocity of the wall at the point p: V + W x (p - c), arm = p - c. With V, W, c of walls_poses and p halfway between the point's places at both
- * ends of the step this is exactly its displacement over dt. */
-LAW vec3 wall_velocity(vec3 velocity, vec3 spin, vec3 arm) { return v3_add(velocity, v3_cross(spin, arm)); }
+/* Velocity of the wall at the point p: V + W x (p - c), arm = p - c. With V, W, c of walls_poses
+ * and p halfway between the point's places at both ends of the step this is exactly its
+ * displacement over dt. */
+LAW vec3 wall_velocity(vec3 velocity, vec3 spin, vec3 arm)
+{
+    return v3_add(velocity, v3_cross(spin, arm));
+}
 
 #endif

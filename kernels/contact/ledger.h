@@ -1,5 +1,6 @@
-/* What a contact has taken from the energy since it was last collected: planes of double [LEDGER_WIDTH][capacity], one number per contact each [J].
- * Host and device share the numbers; they exist only WITH_ENERGY. */
+/* What a contact has taken from the energy since it was last collected: planes of double
+ * [LEDGER_WIDTH][capacity], one number per contact each [J]. Host and device share the numbers;
+ * they exist only WITH_ENERGY. */
 #ifndef DEMOCLES_LEDGER_H
 #define DEMOCLES_LEDGER_H
 

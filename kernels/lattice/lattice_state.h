@@ -1,12 +1,16 @@
-/* One cell of the lattice: what a link gives it, what loads give it, and how it moves. Host and device alike.
+/* One cell of the lattice: what a link gives it, what loads give it, and how it moves. Host and
+ * device alike.
  *
- * A fixed DOF (lattice_words.h) has the velocity that its row of loads prescribes, 0 without one: accelerations do not reach it.
+ * A fixed DOF (lattice_words.h) has the velocity that its row of loads prescribes, 0 without one:
+ * accelerations do not reach it.
  *
- * Splittings: kick (at fixed x: dv/dt = a - alpha v, exactly) v <- f v + g a, with f = exp(-alpha c dt), g = (1 - f)/alpha, or 1 and c dt; drift
- * x <- x + c dt v. The kick that ends a step and the one that begins the next are done one after the other, so that a step that is looked at in
+ * Splittings: kick (at fixed x: dv/dt = a - alpha v, exactly) v <- f v + g a, with f = exp(-alpha c
+ * dt), g = (1 - f)/alpha, or 1 and c dt; drift x <- x + c dt v. The kick that ends a step and the
+ * one that begins the next are done one after the other, so that a step that is looked at in
  * between has the same bits.
  *
- * Runge-Kutta and Runge-Kutta-Nystrom: a stage sees the state at its place, s, and the step's start, 0; see struct lattice_stage. */
+ * Runge-Kutta and Runge-Kutta-Nystrom: a stage sees the state at its place, s, and the step's
+ * start, 0; see struct lattice_stage. */
 #ifndef DEMOCLES_LATTICE_STATE_H
 #define DEMOCLES_LATTICE_STATE_H
 
@@ -30,51 +34,56 @@ struct lattice_load {
 
 /* A row of loads, from device or host memory. */
 #define LATTICE_VEC(p, k) v3((p)[k], (p)[(k) + 1], (p)[(k) + 2])
-#define LATTICE_LOAD(l, p)                                                                                                                           \
-    do {                                                                                                                                             \
-        (l).force = LATTICE_VEC(p, LOAD_FORCE);                                                                                                      \
-        (l).lever[0] = LATTICE_VEC(p, LOAD_LEVER);                                                                                                   \
-        (l).lever[1] = LATTICE_VEC(p, LOAD_LEVER + 3);                                                                                               \
-        (l).lever[2] = LATTICE_VEC(p, LOAD_LEVER + 6);                                                                                               \
-        (l).body = LATTICE_VEC(p, LOAD_BODY);                                                                                                        \
-        (l).traction = (p)[LOAD_TRACTION];                                                                                                           \
-        (l).lower = v3((p)[LOAD_NORMAL], (p)[LOAD_NORMAL + 2], (p)[LOAD_NORMAL + 4]);                                                                \
-        (l).upper = v3((p)[LOAD_NORMAL + 1], (p)[LOAD_NORMAL + 3], (p)[LOAD_NORMAL + 5]);                                                            \
-        (l).acceleration = LATTICE_VEC(p, LOAD_ACCELERATION);                                                                                        \
-        (l).v = LATTICE_VEC(p, LOAD_VELOCITY);                                                                                                       \
-        (l).w = LATTICE_VEC(p, LOAD_VELOCITY + 3);                                                                                                   \
-        (l).now_v = LATTICE_VEC(p, LOAD_NOW);                                                                                                        \
-        (l).now_w = LATTICE_VEC(p, LOAD_NOW + 3);                                                                                                    \
-        (l).rate = (p)[LOAD_RATE];                                                                                                                   \
+#define LATTICE_LOAD(l, p)                                                                         \
+    do {                                                                                           \
+        (l).force = LATTICE_VEC(p, LOAD_FORCE);                                                    \
+        (l).lever[0] = LATTICE_VEC(p, LOAD_LEVER);                                                 \
+        (l).lever[1] = LATTICE_VEC(p, LOAD_LEVER + 3);                                             \
+        (l).lever[2] = LATTICE_VEC(p, LOAD_LEVER + 6);                                             \
+        (l).body = LATTICE_VEC(p, LOAD_BODY);                                                      \
+        (l).traction = (p)[LOAD_TRACTION];                                                         \
+        (l).lower = v3((p)[LOAD_NORMAL], (p)[LOAD_NORMAL + 2], (p)[LOAD_NORMAL + 4]);              \
+        (l).upper = v3((p)[LOAD_NORMAL + 1], (p)[LOAD_NORMAL + 3], (p)[LOAD_NORMAL + 5]);          \
+        (l).acceleration = LATTICE_VEC(p, LOAD_ACCELERATION);                                      \
+        (l).v = LATTICE_VEC(p, LOAD_VELOCITY);                                                     \
+        (l).w = LATTICE_VEC(p, LOAD_VELOCITY + 3);                                                 \
+        (l).now_v = LATTICE_VEC(p, LOAD_NOW);                                                      \
+        (l).now_w = LATTICE_VEC(p, LOAD_NOW + 3);                                                  \
+        (l).rate = (p)[LOAD_RATE];                                                                 \
     } while (0)
 /* A row of the table of links. */
-#define LATTICE_CONSTANTS(k, p)                                                                                                                      \
-    do {                                                                                                                                             \
-        (k).kn = (p)[0];                                                                                                                             \
-        (k).ks = (p)[1];                                                                                                                             \
-        (k).kt = (p)[2];                                                                                                                             \
-        (k).kb = (p)[3];                                                                                                                             \
-        (k).r_i = (p)[4];                                                                                                                            \
-        (k).r_j = (p)[5];                                                                                                                            \
-        (k).h = (p)[6];                                                                                                                              \
-        (k).eta = (p)[7];                                                                                                                            \
+#define LATTICE_CONSTANTS(k, p)                                                                    \
+    do {                                                                                           \
+        (k).kn = (p)[0];                                                                           \
+        (k).ks = (p)[1];                                                                           \
+        (k).kt = (p)[2];                                                                           \
+        (k).kb = (p)[3];                                                                           \
+        (k).r_i = (p)[4];                                                                          \
+        (k).r_j = (p)[5];                                                                          \
+        (k).h = (p)[6];                                                                            \
+        (k).eta = (p)[7];                                                                          \
     } while (0)
 
-/* What the link over face `face` (bit of the mask, a constant) does to the cell `me`; p: lambda Th [Pa]. */
-LAW struct link_share lattice_link(
-    int face, int exists, struct link_cell me, struct link_cell other, struct link_constants k, real p_me, real p_other)
+/* What the link over face `face` (bit of the mask, a constant) does to the cell `me`; p: lambda Th
+ * [Pa]. */
+LAW struct link_share lattice_link(int face, int exists, struct link_cell me,
+    struct link_cell other, struct link_constants k, real p_me, real p_other)
 {
     int axis = face >> 1, is_lower = face & 1;
-    struct link_state s = is_lower ? link_state_of(axis, me, other, k.h) : link_state_of(axis, other, me, k.h);
-    struct link_force f = is_lower ? link_force_of(s, k, p_me, p_other) : link_force_of(s, k, p_other, p_me);
+    struct link_state s =
+        is_lower ? link_state_of(axis, me, other, k.h) : link_state_of(axis, other, me, k.h);
+    struct link_force f =
+        is_lower ? link_force_of(s, k, p_me, p_other) : link_force_of(s, k, p_other, p_me);
     return link_if(exists, is_lower ? link_on_lower(axis, s, f) : link_on_upper(axis, s, f));
 }
 
 /* What the link adds to the sum of stretches of the cell [m]. */
-LAW real lattice_stretch(int face, int exists, struct link_cell me, struct link_cell other, struct link_constants k, real eta)
+LAW real lattice_stretch(int face, int exists, struct link_cell me, struct link_cell other,
+    struct link_constants k, real eta)
 {
     int axis = face >> 1, is_lower = face & 1;
-    struct link_state s = is_lower ? link_state_of(axis, me, other, k.h) : link_state_of(axis, other, me, k.h);
+    struct link_state s =
+        is_lower ? link_state_of(axis, me, other, k.h) : link_state_of(axis, other, me, k.h);
     return volume_part(exists, is_lower ? k.r_i : k.r_j, link_stretch(s, eta));
 }
 
@@ -86,10 +95,14 @@ LAW struct link_share lattice_add(struct link_share a, struct link_share b)
 }
 
 /* R s of the cell. */
-LAW vec3 lattice_turned(struct link_cell c, vec3 s) { return WITH_TURN ? v3_of_p3(quat_rotate(c.q, p3_of_v3(s))) : s; }
+LAW vec3 lattice_turned(struct link_cell c, vec3 s)
+{
+    return WITH_TURN ? v3_of_p3(quat_rotate(c.q, p3_of_v3(s))) : s;
+}
 
 /* Adds force and torque of the loads. */
-LAW struct link_share lattice_load_add(struct link_share sum, struct link_cell c, struct lattice_load l)
+LAW struct link_share lattice_load_add(
+    struct link_share sum, struct link_cell c, struct lattice_load l)
 {
     sum.force = v3_add(v3_add(sum.force, l.force), lattice_turned(c, l.body));
     sum.torque = v3_add(sum.torque, v3_cross(lattice_turned(c, v3(1, 0, 0)), l.lever[0]));
@@ -101,10 +114,14 @@ LAW struct link_share lattice_load_add(struct link_share sum, struct link_cell c
 /* Components of v whose bit, from `bit` on, is set, are as given. */
 LAW vec3 lattice_hold(vec3 v, int word, int bit, vec3 given)
 {
-    return v3(word >> bit & 1 ? given.x : v.x, word >> (bit + 1) & 1 ? given.y : v.y, word >> (bit + 2) & 1 ? given.z : v.z);
+    return v3(word >> bit & 1 ? given.x : v.x, word >> (bit + 1) & 1 ? given.y : v.y,
+        word >> (bit + 2) & 1 ? given.z : v.z);
 }
 
-LAW vec3 lattice_kick(vec3 v, vec3 a, real f, real g) { return v3_fma(g, a, WITH_MASS_DAMPING ? v3_scale(f, v) : v); }
+LAW vec3 lattice_kick(vec3 v, vec3 a, real f, real g)
+{
+    return v3_fma(g, a, WITH_MASS_DAMPING ? v3_scale(f, v) : v);
+}
 
 /* x, theta or q after a drift over dt. */
 LAW struct link_cell lattice_drift(struct link_cell c, preal dt)
@@ -115,17 +132,21 @@ LAW struct link_cell lattice_drift(struct link_cell c, preal dt)
     return c;
 }
 
-/* Coefficients of one stage, with their powers of dt [s]. x stands for u and the rotation vector from the step's start, a for both accelerations:
+/* Coefficients of one stage, with their powers of dt [s]. x stands for u and the rotation vector
+ * from the step's start, a for both accelerations:
  *     sums     X <- X + sum_v v_s + sum_a a_s,   V <- V + sum_k a_s
- *     then     x = x_0 + next_v v_s + next_a a_s, v = v_0 + next_k a_s;   last stage: x = x_0 + X, v = v_0 + V
- * Rotation: RK4 takes its rate (quat_rate) in place of w; Nystrom adds commutators over `next_turn` and `sum_turn` (quat_rkn4). */
+ *     then     x = x_0 + next_v v_s + next_a a_s, v = v_0 + next_k a_s;   last stage: x = x_0 + X,
+ *       v = v_0 + V
+ * Rotation: RK4 takes its rate (quat_rate) in place of w; Nystrom adds commutators over `next_turn`
+ * and `sum_turn` (quat_rkn4). */
 struct lattice_stage {
     preal sum_v, sum_a, next_v, next_a, next_turn, sum_turn;
     real sum_k, next_k;
     int is_first, is_last, is_nystrom;
 };
 
-/* Sums so far: X of u and of the rotation vector, V of v and w; r: rotation vector of the stage from the step's start [rad]. */
+/* Sums so far: X of u and of the rotation vector, V of v and w; r: rotation vector of the stage
+ * from the step's start [rad]. */
 struct lattice_sums {
     pvec3 u, turn, r;
     vec3 v, w;
@@ -139,11 +160,13 @@ LAW struct lattice_sums lattice_sums_zero(void)
     return s;
 }
 
-/* The cell at the next stage, or at the end of the step; `now`: v and w of this stage, `start`: the step's start; a, b: accelerations, 0 of fixed
- * DOF. mean_v, mean_w: (v_1 + v_2)/2, of the prescribed velocities at this stage and the next, on Nystrom's way to its second stage: what dt^2 k1/8
- * is to a free DOF. With v_2 on the way to the third their errors cancel as those of a free DOF do. */
-LAW struct link_cell lattice_stage_next(
-    struct link_cell now, struct link_cell start, vec3 a, vec3 b, vec3 mean_v, vec3 mean_w, struct lattice_stage c, struct lattice_sums *sum)
+/* The cell at the next stage, or at the end of the step; `now`: v and w of this stage, `start`: the
+ * step's start; a, b: accelerations, 0 of fixed DOF. mean_v, mean_w: (v_1 + v_2)/2, of the
+ * prescribed velocities at this stage and the next, on Nystrom's way to its second stage: what dt^2
+ * k1/8 is to a free DOF. With v_2 on the way to the third their errors cancel as those of a free
+ * DOF do. */
+LAW struct link_cell lattice_stage_next(struct link_cell now, struct link_cell start, vec3 a,
+    vec3 b, vec3 mean_v, vec3 mean_w, struct lattice_stage c, struct lattice_sums *sum)
 {
     struct link_cell next = start;
     pvec3 v = p3_of_v3(now.v), w = p3_of_v3(now.w), pa = p3_of_v3(a), pb = p3_of_v3(b), shift, r;
@@ -156,7 +179,8 @@ LAW struct link_cell lattice_stage_next(
     v = p3_choose(c.is_nystrom && c.is_first, p3_of_v3(mean_v), v);
     w = p3_choose(c.is_nystrom && c.is_first, p3_of_v3(mean_w), w);
     shift = p3_choose(c.is_last, sum->u, p3_fma(c.next_a, pa, p3_scale(c.next_v, v)));
-    r = p3_choose(c.is_last, sum->turn, quat_rkn4(p3_fma(c.next_a, pb, p3_scale(c.next_v, w)), w, pb, c.next_turn));
+    r = p3_choose(c.is_last, sum->turn,
+        quat_rkn4(p3_fma(c.next_a, pb, p3_scale(c.next_v, w)), w, pb, c.next_turn));
     next.u = p3_add(start.u, shift);
     if (WITH_TURN) next.q = quat_turn(start.q, r);
     else next.theta = p3_add(start.theta, r);

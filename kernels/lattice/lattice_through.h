@@ -1,9 +1,12 @@
-/* Stress of one cell from the forces through its faces (law_stress.h): links, and loads on faces without link. Host and device alike.
+/* Stress of one cell from the forces through its faces (law_stress.h): links, and loads on faces
+ * without link. Host and device alike.
  *
- * Of the loads on the two faces of an axis the row of the stress needs the force on the upper face less that on the lower: twice the lever over h of
- * those that keep their direction, and, along the turned axis, what is left of the sum of t.n: pressures. Loads on a cell's centre cross no face.
+ * Of the loads on the two faces of an axis the row of the stress needs the force on the upper face
+ * less that on the lower: twice the lever over h of those that keep their direction, and, along the
+ * turned axis, what is left of the sum of t.n: pressures. Loads on a cell's centre cross no face.
  *
- * A face is loaded while the traction on it is not 0. Of an axis without links both faces count then: the other one, if free, is known to bear 0. */
+ * A face is loaded while the traction on it is not 0. Of an axis without links both faces count
+ * then: the other one, if free, is known to bear 0. */
 #ifndef DEMOCLES_LATTICE_THROUGH_H
 #define DEMOCLES_LATTICE_THROUGH_H
 
@@ -18,26 +21,31 @@ struct lattice_through {
 LAW vec3 lattice_load_pair(int axis, struct link_cell c, struct lattice_load l, real h)
 {
     vec3 pair = v3_scale((real)2 / h, l.lever[axis]);
-    real normal = v3_cycle(v3_add(l.lower, l.upper), axis).x, pressed = r_fma(h * h, normal, -v3_cycle(pair, axis).x);
+    real normal = v3_cycle(v3_add(l.lower, l.upper), axis).x,
+         pressed = r_fma(h * h, normal, -v3_cycle(pair, axis).x);
     return v3_fma(pressed, lattice_turned(c, v3_uncycle(v3(1, 0, 0), axis)), pair);
 }
 
 /* The two bits of an axis whose faces bear the load. */
 LAW int lattice_load_faces(int axis, vec3 pair)
 {
-    int is_loaded = pair.x > 0 || pair.x < 0 || pair.y > 0 || pair.y < 0 || pair.z > 0 || pair.z < 0;
+    int is_loaded =
+        pair.x > 0 || pair.x < 0 || pair.y > 0 || pair.y < 0 || pair.z > 0 || pair.z < 0;
     return is_loaded ? 3 << (2 * axis) : 0;
 }
 
-/* In the cell's axes with WITH_TURN, else in the world's [Pa]. links: mask; h: edge of the cell [m]. */
-LAW struct stress lattice_stress_of(struct lattice_through f, struct link_cell c, struct lattice_load load, int links, real h, int extrapolate)
+/* In the cell's axes with WITH_TURN, else in the world's [Pa]. links: mask; h: edge of the cell
+ * [m]. */
+LAW struct stress lattice_stress_of(struct lattice_through f, struct link_cell c,
+    struct lattice_load load, int links, real h, int extrapolate)
 {
     struct stress_rows r;
     real per_area = (real)1 / (h * h);
     int faces = links;
 
     if (WITH_LOADS) {
-        vec3 x = lattice_load_pair(0, c, load, h), y = lattice_load_pair(1, c, load, h), z = lattice_load_pair(2, c, load, h);
+        vec3 x = lattice_load_pair(0, c, load, h), y = lattice_load_pair(1, c, load, h),
+             z = lattice_load_pair(2, c, load, h);
         faces |= lattice_load_faces(0, x) | lattice_load_faces(1, y) | lattice_load_faces(2, z);
         f.x[1] = v3_add(f.x[1], x);
         f.y[1] = v3_add(f.y[1], y);

@@ -1,6 +1,7 @@
-/* Lattice cells in device memory: runs of BATCH cells along RUN_AXIS, one work-group each (src/lattice/lattice_layout.h). Bases of the neighbouring
- * runs are uniform over the group, so all loads are contiguous. Planes: number k of cell i is at k * plane + i; x and v point to the first plane of
- * the state. */
+/* Lattice cells in device memory: runs of BATCH cells along RUN_AXIS, one work-group each
+ * (src/lattice/lattice_layout.h). Bases of the neighbouring runs are uniform over the group, so all
+ * loads are contiguous. Planes: number k of cell i is at k * plane + i; x and v point to the first
+ * plane of the state. */
 #ifndef DEMOCLES_LATTICE_VIEW_H
 #define DEMOCLES_LATTICE_VIEW_H
 
@@ -10,7 +11,8 @@
 #ifndef RUN_AXIS
 #define RUN_AXIS 0
 #endif
-#define RUN_SIDE(axis) (2 * ((axis) - ((axis) > RUN_AXIS))) /* of base: the runs beside along this axis */
+/* of base: the runs beside along this axis */
+#define RUN_SIDE(axis) (2 * ((axis) - ((axis) > RUN_AXIS)))
 
 struct lattice_view {
     __global const preal *x;
@@ -19,7 +21,8 @@ struct lattice_view {
     __global const int *word;
     __global const real *link; /* table of LINK_WIDTH */
     size_t plane, begin;       /* begin: of this run */
-    size_t base[4];            /* of the runs beside, - and + along the lower of the two other axes, then along the higher */
+    /* of the runs beside, - and + along the lower of the two other axes, then along the higher */
+    size_t base[4];
     int n_kind;
     int still;               /* 1: links without their dashpots */
     struct link_constants k; /* of a run whose cells and neighbours are of one kind */
@@ -32,7 +35,9 @@ LAW struct link_cell lattice_cell(struct lattice_view s, size_t i)
     c.theta = c.u;
     c.q = quat_of(1, 0, 0, 0);
     c.v = c.w = v3(0, 0, 0);
-    if (WITH_TURN) c.q = quat_of(s.x[3 * s.plane + i], s.x[4 * s.plane + i], s.x[5 * s.plane + i], s.x[6 * s.plane + i]);
+    if (WITH_TURN)
+        c.q = quat_of(
+            s.x[3 * s.plane + i], s.x[4 * s.plane + i], s.x[5 * s.plane + i], s.x[6 * s.plane + i]);
     else c.theta = p3(s.x[3 * s.plane + i], s.x[4 * s.plane + i], s.x[5 * s.plane + i]);
     return c;
 }
@@ -47,16 +52,21 @@ LAW struct link_cell lattice_moving(struct lattice_view s, size_t i, struct link
 LAW size_t lattice_beside(struct lattice_view s, int face, size_t l)
 {
     int axis = face >> 1, is_upper = face & 1;
-    return axis != RUN_AXIS ? s.base[RUN_SIDE(axis) + is_upper] + l : is_upper ? s.begin + l + 1 : s.begin + l - 1;
+    return axis != RUN_AXIS ? s.base[RUN_SIDE(axis) + is_upper] + l
+           : is_upper       ? s.begin + l + 1
+                            : s.begin + l - 1;
 }
 
 /* Constants of the link over a face: of the run, or (`mixed`) of the two cells' kinds. */
-LAW struct link_constants lattice_constants(struct lattice_view s, int face, int mixed, int word, size_t j)
+LAW struct link_constants lattice_constants(
+    struct lattice_view s, int face, int mixed, int word, size_t j)
 {
     struct link_constants k = s.k;
     if (WITH_KINDS && mixed) {
         int me = LATTICE_KIND(word), other = LATTICE_KIND(s.word[j]);
-        __global const real *row = s.link + (size_t)(face & 1 ? me * s.n_kind + other : other * s.n_kind + me) * LINK_WIDTH;
+        __global const real *row =
+            s.link +
+            (size_t)(face & 1 ? me * s.n_kind + other : other * s.n_kind + me) * LINK_WIDTH;
         LATTICE_CONSTANTS(k, row);
     }
     return k;
@@ -71,8 +81,9 @@ LAW void lattice_view_runs(struct lattice_view *s, __global const int *base, int
     s->base[3] = (size_t)base[3 * n_run + run];
 }
 
-LAW struct lattice_view lattice_view_of(__global const preal *x, __global const real *v, __global const int *word, __global const real *link,
-    __global const int *base, int run, int n_run, int n_kind, int kind, size_t plane)
+LAW struct lattice_view lattice_view_of(__global const preal *x, __global const real *v,
+    __global const int *word, __global const real *link, __global const int *base, int run,
+    int n_run, int n_kind, int kind, size_t plane)
 {
     struct lattice_view s;
     __global const real *row = link + (size_t)(kind * n_kind + kind) * LINK_WIDTH;
@@ -90,20 +101,23 @@ LAW struct lattice_view lattice_view_of(__global const preal *x, __global const 
 }
 
 #ifdef __OPENCL_VERSION__
-/* Pieces that are fetched ahead: of what lies at the front of the tile, x of the run beside that comes last, and of what belongs to the cells alone.
- * On 100^3 cells in double precision, pocl 3.1, AMD Zen 5 (leapfrog): 88 million cells/s with none ahead, 98 with 2, 104 with 3, 110 with 4, 117 with
- * 5, 115 with 6. */
+/* Pieces that are fetched ahead: of what lies at the front of the tile, x of the run beside that
+ * comes last, and of what belongs to the cells alone. On 100^3 cells in double precision, pocl 3.1,
+ * AMD Zen 5 (leapfrog): 88 million cells/s with none ahead, 98 with 2, 104 with 3, 110 with 4, 117
+ * with 5, 115 with 6. */
 enum { PIECES_AHEAD = 5 };
 
 LAW void lattice_fetch(__global const void *first, size_t bytes, size_t plane, int n_plane)
 {
-    for (int k = 0; k < n_plane; k++) PREFETCH((__global const char *)first + (size_t)k * plane * bytes);
+    for (int k = 0; k < n_plane; k++)
+        PREFETCH((__global const char *)first + (size_t)k * plane * bytes);
     (void)first, (void)bytes, (void)plane;
 }
 #endif
 
 /* Force and torque of the link over a face. */
-LAW struct link_share lattice_face(int face, int mixed, struct lattice_view s, size_t l, int word, struct link_cell me)
+LAW struct link_share lattice_face(
+    int face, int mixed, struct lattice_view s, size_t l, int word, struct link_cell me)
 {
     size_t i = s.begin + l, j = lattice_beside(s, face, l);
     struct link_cell other = lattice_cell(s, j);
@@ -113,11 +127,13 @@ LAW struct link_share lattice_face(int face, int mixed, struct lattice_view s, s
         p_me = s.p[i];
         p_other = s.p[j];
     }
-    return lattice_link(face, LATTICE_LINKS(word) >> face & 1, me, other, lattice_constants(s, face, mixed, word, j), p_me, p_other);
+    return lattice_link(face, LATTICE_LINKS(word) >> face & 1, me, other,
+        lattice_constants(s, face, mixed, word, j), p_me, p_other);
 }
 
 /* The six links in the order of the mask. */
-LAW struct link_share lattice_links(int mixed, struct lattice_view s, size_t l, int word, struct link_cell me)
+LAW struct link_share lattice_links(
+    int mixed, struct lattice_view s, size_t l, int word, struct link_cell me)
 {
     struct link_share sum = lattice_face(0, mixed, s, l, word, me);
     sum = lattice_add(sum, lattice_face(1, mixed, s, l, word, me));
@@ -127,13 +143,16 @@ LAW struct link_share lattice_links(int mixed, struct lattice_view s, size_t l, 
     return lattice_add(sum, lattice_face(5, mixed, s, l, word, me));
 }
 
-/* What the link over a face adds to the sum of stretches of the cell [m]. eta of that cell; 0: without damping. */
-LAW real lattice_part(int face, int mixed, struct lattice_view s, size_t l, int word, struct link_cell me, real eta)
+/* What the link over a face adds to the sum of stretches of the cell [m]. eta of that cell; 0:
+ * without damping. */
+LAW real lattice_part(
+    int face, int mixed, struct lattice_view s, size_t l, int word, struct link_cell me, real eta)
 {
     size_t j = lattice_beside(s, face, l);
     struct link_cell other = lattice_cell(s, j);
     if (WITH_LINK_DAMPING && !s.still) other = lattice_moving(s, j, other);
-    return lattice_stretch(face, word >> face & 1, me, other, lattice_constants(s, face, mixed, word, j), eta);
+    return lattice_stretch(
+        face, word >> face & 1, me, other, lattice_constants(s, face, mixed, word, j), eta);
 }
 
 #endif

@@ -1,7 +1,8 @@
 /* Numbers that host and kernels of the lattice agree on.
  *
- * Word of a cell: bits 0-5 its links (-x, +x, -y, +y, -z, +z), 6-11 its fixed DOF (x, y, z, and rotation about them), 12 whether this rank owns it,
- * 16-23 its kind. Planes of x: u(3), then q (w, x, y, z) or theta(3); of v: v(3), w(3). */
+ * Word of a cell: bits 0-5 its links (-x, +x, -y, +y, -z, +z), 6-11 its fixed DOF (x, y, z, and
+ * rotation about them), 12 whether this rank owns it, 16-23 its kind. Planes of x: u(3), then q (w,
+ * x, y, z) or theta(3); of v: v(3), w(3). */
 #ifndef DEMOCLES_LATTICE_WORDS_H
 #define DEMOCLES_LATTICE_WORDS_H
 
@@ -9,7 +10,8 @@
 #define WORD_OWNED 12
 #define WORD_KIND 16
 
-/* Fate of a cell: three bits for each upper face (x, y, z), the mode of law_break.h in which that link broke; the lower cell of a link has it. */
+/* Fate of a cell: three bits for each upper face (x, y, z), the mode of law_break.h in which that
+ * link broke; the lower cell of a link has it. */
 #define FATE_MODE(fate, axis) ((fate) >> (3 * (axis)) & 7)
 
 #define LATTICE_X(with_turn) ((with_turn) ? 7 : 6)
@@ -17,11 +19,17 @@
 #define LATTICE_LEDGER 3 /* planes of double, WITH_ENERGY: struct lattice_ledger */
 
 /* Rows of tables of real. */
-#define LINK_WIDTH 8  /* kn ks kt kb r_i r_j h eta; row: kind of the lower cell times n_kind + kind of the higher */
-#define CELL_WIDTH 8  /* 1/m [1/kg], 1/J [1/(kg m2)], lambda [Pa], 1/(4 G) [1/Pa], 1/(2 h) [1/m], eta [s], alpha [1/s], h^3 [m3]; row: kind */
-#define BREAK_WIDTH 5 /* one over the limits of normal and shear force, bending and twisting moment, criterion (law_break.h); row: as links */
-#define KICK_WIDTH 12 /* the kick that ends a step, the one that begins the next, KICK_PART each; row: kind */
-#define KICK_PART 6   /* f g, and s G A C that WITH_ENERGY alone reads (lattice_work.h) */
+/* kn ks kt kb r_i r_j h eta; row: kind of the lower cell times n_kind + kind of the higher */
+#define LINK_WIDTH 8
+/* 1/m [1/kg], 1/J [1/(kg m2)], lambda [Pa], 1/(4 G) [1/Pa], 1/(2 h) [1/m], eta [s], alpha [1/s],
+ * h^3 [m3]; row: kind */
+#define CELL_WIDTH 8
+/* one over the limits of normal and shear force, bending and twisting moment, criterion
+ * (law_break.h); row: as links */
+#define BREAK_WIDTH 5
+/* the kick that ends a step, the one that begins the next, KICK_PART each; row: kind */
+#define KICK_WIDTH 12
+#define KICK_PART 6 /* f g, and s G A C that WITH_ENERGY alone reads (lattice_work.h) */
 /* Info of a run: its kind, and this if its cells have to be looked at one by one. */
 #define RUN_MIXED 256
 

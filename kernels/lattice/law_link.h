@@ -1,32 +1,44 @@
-/* One elastic link between two rigid cubes: six springs at the common face of cell i (lower coordinate) and cell j (higher), along axis a.
+/* One elastic link between two rigid cubes: six springs at the common face of cell i (lower
+ * coordinate) and cell j (higher), along axis a.
  *
- * Everything here is seen with axis a first: x, y, z of a vector stand for (a, b, c) cyclic, e = (1, 0, 0), until link_on_lower and link_on_upper
- * turn back. A link is always evaluated from lower to higher, so the two cells (and two ranks) that do so find the same bits, and each keeps its
- * share: force f on i, -f on j. Displacements, never positions: strains keep their digits in single precision.
+ * Everything here is seen with axis a first: x, y, z of a vector stand for (a, b, c) cyclic, e =
+ * (1, 0, 0), until link_on_lower and link_on_upper turn back. A link is always evaluated from lower
+ * to higher, so the two cells (and two ranks) that do so find the same bits, and each keeps its
+ * share: force f on i, -f on j. Displacements, never positions: strains keep their digits in single
+ * precision.
  *
  * Small rotations (WITH_TURN = 0), theta [rad]; linear, not objective:
  *     g = u_j - u_i - (h/2) (theta_i + theta_j) x e,   chi = theta_j - theta_i
- *     f = (kn g_a + P, ks g_b, ks g_c),   mom = (kt chi_a, kb chi_b, kb chi_c),   P = (h^2/2)(r_i p_i + r_j p_j)
+ *     f = (kn g_a + P, ks g_b, ks g_c),   mom = (kt chi_a, kb chi_b, kb chi_c),   P = (h^2/2)(r_i
+ *       p_i + r_j p_j)
  *     torque on i: (h/2) e x f + mom,   on j: (h/2) e x f - mom
  *
- * Any rotation (WITH_TURN = 1), unit quaternions q; a = R e, n = (a_i + a_j)/2 (not normalised), (s, v) = q_j q_i^-1 the relative rotation. Energy
- *     U = ks |g|^2/2 + (kn - ks) (n.g)^2/2 + 2 kb |v|^2 + 2 (kt - kb) (v.a_i)^2,   g = u_j - u_i - (h/2)(d_i + d_j),   d = a - e
- * and force and torques are its exact gradient, hence objective, with linear and angular momentum kept to rounding:
+ * Any rotation (WITH_TURN = 1), unit quaternions q; a = R e, n = (a_i + a_j)/2 (not normalised),
+ * (s, v) = q_j q_i^-1 the relative rotation. Energy
+ *     U = ks |g|^2/2 + (kn - ks) (n.g)^2/2 + 2 kb |v|^2 + 2 (kt - kb) (v.a_i)^2,   g = u_j - u_i -
+ *       (h/2)(d_i + d_j),   d = a - e
+ * and force and torques are its exact gradient, hence objective, with linear and angular momentum
+ * kept to rounding:
  *     f = ks g + f_e n,   f_e = (kn - ks) n.g + P
  *     mom = 2 kb s v + 2 (kt - kb) (v.a_i) (s a_i + v x a_i)
  *     torque on i: a_i x lever + mom,   on j: a_j x lever - mom,   lever = (h/2) f - (f_e/2) g
- * v.a_i = v.a_j, because the relative rotation leaves its own axis alone; U does not know which cell is i, nor the signs of q. A pure bend or twist
- * by an angle x has the moment k sin(x). For bending this is kb (1 - a_i.a_j); for twist it is nearer to linear than (kt/2) sin^2 x. No trigonometry,
- * no root.
+ * v.a_i = v.a_j, because the relative rotation leaves its own axis alone; U does not know which
+ * cell is i, nor the signs of q. A pure bend or twist by an angle x has the moment k sin(x). For
+ * bending this is kb (1 - a_i.a_j); for twist it is nearer to linear than (kt/2) sin^2 x. No
+ * trigonometry, no root.
  *
  * Kelvin-Voigt damping (WITH_LINK_DAMPING), time eta [s], in addition:
- *     gd = v_j - v_i - (h/2)(w_i x a_i + w_j x a_j) - (w_i + w_j)/2 x g,   zero for rigid motion of a strained body
- *     f_d = eta (ks gd + (kn - ks)(n.gd) n) at the middle of the gap, arms (h/2) a_i + g/2 and -(h/2) a_j - g/2
+ *     gd = v_j - v_i - (h/2)(w_i x a_i + w_j x a_j) - (w_i + w_j)/2 x g,   zero for rigid motion of
+ *       a strained body
+ *     f_d = eta (ks gd + (kn - ks)(n.gd) n) at the middle of the gap, arms (h/2) a_i + g/2 and
+ *       -(h/2) a_j - g/2
  *     mom_d = eta (kb wr + (kt - kb)(n.wr) n),   wr = w_j - w_i
- * so the power -f_d.gd - mom_d.wr is never positive, and p takes n.g + eta d(n.g)/dt (link_stretch). The small form is k (g + eta gd) with linear gd.
+ * so the power -f_d.gd - mom_d.wr is never positive, and p takes n.g + eta d(n.g)/dt
+ * (link_stretch). The small form is k (g + eta gd) with linear gd.
  *
- * WITH_VOLUME: P exists. WITH_SHEAR_APART: kn != ks, WITH_TWIST_APART: kt != kb, somewhere in the body; the small form does not care, it is as cheap
- * either way. A rigid wall is a cell j without mass that the wall carries, centre h/2 behind the face, with the constants of a half-link. */
+ * WITH_VOLUME: P exists. WITH_SHEAR_APART: kn != ks, WITH_TWIST_APART: kt != kb, somewhere in the
+ * body; the small form does not care, it is as cheap either way. A rigid wall is a cell j without
+ * mass that the wall carries, centre h/2 behind the face, with the constants of a half-link. */
 #ifndef DEMOCLES_LAW_LINK_H
 #define DEMOCLES_LAW_LINK_H
 
@@ -73,7 +85,8 @@ struct link_share {
     vec3 torque; /* about its centre [N m] */
 };
 
-/* v and w of the relative rotation. dq = q_j - q_i is exact for neighbours, so that no digit of the angle is lost against 1. */
+/* v and w of the relative rotation. dq = q_j - q_i is exact for neighbours, so that no digit of the
+ * angle is lost against 1. */
 LAW void link_turn(struct quat i, struct quat j, struct link_state *s)
 {
     real w = (real)i.w, dw = (real)(j.w - i.w);
@@ -118,27 +131,37 @@ LAW struct link_state link_state_of(int axis, struct link_cell i, struct link_ce
         link_turn(q_i, q_j, &s);
     } else {
         pvec3 t_i = p3_cycle(i.theta, axis), t_j = p3_cycle(j.theta, axis);
-        s.gap = v3((real)du.x, (real)p_fma(-arm, t_i.z + t_j.z, du.y), (real)p_fma(arm, t_i.y + t_j.y, du.z));
+        s.gap = v3((real)du.x, (real)p_fma(-arm, t_i.z + t_j.z, du.y),
+            (real)p_fma(arm, t_i.y + t_j.y, du.z));
         s.turn = v3_of_p3(p3_sub(t_j, t_i));
     }
-    if (WITH_LINK_DAMPING) link_rates(v3_cycle(i.v, axis), v3_cycle(j.v, axis), v3_cycle(i.w, axis), v3_cycle(j.w, axis), (real)arm, &s);
+    if (WITH_LINK_DAMPING)
+        link_rates(v3_cycle(i.v, axis), v3_cycle(j.v, axis), v3_cycle(i.w, axis),
+            v3_cycle(j.w, axis), (real)arm, &s);
     return s;
 }
 
-/* n.g [m], and its rate [m/s]: the part along n of gd, and of n turning against the mean spin, wr x (a_j - a_i)/4. */
+/* n.g [m], and its rate [m/s]: the part along n of gd, and of n turning against the mean spin, wr x
+ * (a_j - a_i)/4. */
 LAW real link_normal_gap(struct link_state s) { return WITH_TURN ? v3_dot(s.n, s.gap) : s.gap.x; }
 LAW real link_normal_rate(struct link_state s)
 {
-    return WITH_TURN ? r_fma((real)0.25, v3_dot(s.gap, v3_cross(s.spin, v3_sub(s.a_j, s.a_i))), v3_dot(s.n, s.gap_rate)) : s.gap_rate.x;
+    return WITH_TURN ? r_fma((real)0.25, v3_dot(s.gap, v3_cross(s.spin, v3_sub(s.a_j, s.a_i))),
+                           v3_dot(s.n, s.gap_rate))
+                     : s.gap_rate.x;
 }
 /* What Th of a cell takes from the link [m]; eta of that cell. */
 LAW real link_stretch(struct link_state s, real eta)
 {
-    return WITH_LINK_DAMPING ? r_fma(eta, link_normal_rate(s), link_normal_gap(s)) : link_normal_gap(s);
+    return WITH_LINK_DAMPING ? r_fma(eta, link_normal_rate(s), link_normal_gap(s))
+                             : link_normal_gap(s);
 }
 
 /* P [N] of the pressures lambda Th of both cells [Pa]. */
-LAW real link_pressure(struct link_constants k, real p_i, real p_j) { return (real)0.5 * k.h * k.h * r_fma(k.r_i, p_i, k.r_j * p_j); }
+LAW real link_pressure(struct link_constants k, real p_i, real p_j)
+{
+    return (real)0.5 * k.h * k.h * r_fma(k.r_i, p_i, k.r_j * p_j);
+}
 
 /* Small rotations: springs on g + eta gd. */
 LAW struct link_force link_force_small(struct link_state s, struct link_constants k, real pressure)
@@ -166,7 +189,9 @@ LAW struct link_force link_force_turned(struct link_state s, struct link_constan
     f.moment = v3_scale((real)2 * k.kb * s.scalar, s.turn);
     f.couple = v3(0, 0, 0);
     if (WITH_SHEAR_APART || WITH_VOLUME) f.force = v3_fma(f_e, s.n, f.force);
-    if (WITH_TWIST_APART) f.moment = v3_fma((real)2 * twist * v3_dot(s.turn, s.a_i), v3_fma(s.scalar, s.a_i, v3_cross(s.turn, s.a_i)), f.moment);
+    if (WITH_TWIST_APART)
+        f.moment = v3_fma((real)2 * twist * v3_dot(s.turn, s.a_i),
+            v3_fma(s.scalar, s.a_i, v3_cross(s.turn, s.a_i)), f.moment);
     if (WITH_LINK_DAMPING) {
         vec3 d = v3_scale(k.eta * k.ks, s.gap_rate);
         if (WITH_SHEAR_APART) d = v3_fma(k.eta * apart * v3_dot(s.n, s.gap_rate), s.n, d);
@@ -181,7 +206,8 @@ LAW struct link_force link_force_turned(struct link_state s, struct link_constan
 }
 
 /* p_i, p_j: lambda Th of both cells [Pa]; not read without WITH_VOLUME. */
-LAW struct link_force link_force_of(struct link_state s, struct link_constants k, real p_i, real p_j)
+LAW struct link_force link_force_of(
+    struct link_state s, struct link_constants k, real p_i, real p_j)
 {
     real pressure = WITH_VOLUME ? link_pressure(k, p_i, p_j) : (real)0;
     return WITH_TURN ? link_force_turned(s, k, pressure) : link_force_small(s, k, pressure);
@@ -214,8 +240,10 @@ LAW struct link_share link_on_upper(int axis, struct link_state s, struct link_f
 /* r where the link exists, else zero: what lies beyond a missing link may be anything, NaN too. */
 LAW struct link_share link_if(int exists, struct link_share r)
 {
-    r.force = v3(exists ? r.force.x : (real)0, exists ? r.force.y : (real)0, exists ? r.force.z : (real)0);
-    r.torque = v3(exists ? r.torque.x : (real)0, exists ? r.torque.y : (real)0, exists ? r.torque.z : (real)0);
+    r.force = v3(
+        exists ? r.force.x : (real)0, exists ? r.force.y : (real)0, exists ? r.force.z : (real)0);
+    r.torque = v3(exists ? r.torque.x : (real)0, exists ? r.torque.y : (real)0,
+        exists ? r.torque.z : (real)0);
     return r;
 }
 
@@ -224,13 +252,16 @@ LAW real link_energy(struct link_state s, struct link_constants k)
 {
     real n = link_normal_gap(s), g2 = v3_dot(s.gap, s.gap), t2 = v3_dot(s.turn, s.turn);
     real a = WITH_TURN ? v3_dot(s.turn, s.a_i) : s.turn.x, four = WITH_TURN ? (real)4 : (real)1;
-    return (real)0.5 * (r_fma(k.ks, g2, (k.kn - k.ks) * n * n) + four * r_fma(k.kb, t2, (k.kt - k.kb) * a * a));
+    return (real)0.5 *
+           (r_fma(k.ks, g2, (k.kn - k.ks) * n * n) + four * r_fma(k.kb, t2, (k.kt - k.kb) * a * a));
 }
 
-/* What the dashpots of the link take [W], >= 0, without the part in p: that is 2 eta times the volumetric energy of the rate of Th. */
+/* What the dashpots of the link take [W], >= 0, without the part in p: that is 2 eta times the
+ * volumetric energy of the rate of Th. */
 LAW real link_dissipation(struct link_state s, struct link_constants k)
 {
-    real n = WITH_TURN ? v3_dot(s.n, s.gap_rate) : s.gap_rate.x, a = WITH_TURN ? v3_dot(s.n, s.spin) : s.spin.x;
+    real n = WITH_TURN ? v3_dot(s.n, s.gap_rate) : s.gap_rate.x,
+         a = WITH_TURN ? v3_dot(s.n, s.spin) : s.spin.x;
     real shear = r_fma(k.ks, v3_dot(s.gap_rate, s.gap_rate), (k.kn - k.ks) * n * n);
     return k.eta * (shear + r_fma(k.kb, v3_dot(s.spin, s.spin), (k.kt - k.kb) * a * a));
 }

@@ -1,5 +1,5 @@
-/* How link_force.cl keeps the account of its cells (lattice_work.h): what acts on a cell, and planes of struct lattice_ledger that every evaluation
- * adds to. WITH_ENERGY only. */
+/* How link_force.cl keeps the account of its cells (lattice_work.h): what acts on a cell, and
+ * planes of struct lattice_ledger that every evaluation adds to. WITH_ENERGY only. */
 #ifndef DEMOCLES_LINK_ACCOUNT_H
 #define DEMOCLES_LINK_ACCOUNT_H
 
@@ -8,8 +8,9 @@
 
 #if WITH_ENERGY
 /* links: what all links of the cell do, as it moves. */
-LAW struct lattice_effort lattice_effort_of(int mixed, struct lattice_view s, size_t l, int word, struct link_cell me, struct link_share links,
-    __global const real *cell, __global const int *row, __global const real *rows, vec3 gravity)
+LAW struct lattice_effort lattice_effort_of(int mixed, struct lattice_view s, size_t l, int word,
+    struct link_cell me, struct link_share links, __global const real *cell,
+    __global const int *row, __global const real *rows, vec3 gravity)
 {
     struct lattice_effort e;
     e.links = e.still = links;
@@ -45,7 +46,8 @@ LAW struct lattice_ledger lattice_ledger_of(__global const double *ledger, size_
     return k;
 }
 
-LAW void lattice_ledger_keep(__global double *ledger, size_t plane, size_t i, struct lattice_ledger k)
+LAW void lattice_ledger_keep(
+    __global double *ledger, size_t plane, size_t i, struct lattice_ledger k)
 {
     ledger[i] = k.work;
     ledger[plane + i] = k.links;
@@ -53,20 +55,24 @@ LAW void lattice_ledger_keep(__global double *ledger, size_t plane, size_t i, st
 }
 
 /* word: 0 if no cell of the run has loads or held DOF. */
-LAW void link_account_kicks(struct lattice_effort e, struct link_cell c, vec3 a, vec3 b, int word, __global const real *cell,
-    __global const real *kick, int count, __global double *ledger, size_t plane, size_t i)
+LAW void link_account_kicks(struct lattice_effort e, struct link_cell c, vec3 a, vec3 b, int word,
+    __global const real *cell, __global const real *kick, int count, __global double *ledger,
+    size_t plane, size_t i)
 {
     struct lattice_kick end, begin;
     struct lattice_ledger sum = lattice_ledger_of(ledger, plane, i);
     double alpha = (double)cell[6], mass = 1.0 / (double)cell[0], inertia = 1.0 / (double)cell[1];
     LATTICE_KICK(end, kick);
     LATTICE_KICK(begin, kick + KICK_PART);
-    lattice_ledger_keep(ledger, plane, i, lattice_work_split(sum, e, c, a, b, end, begin, word, alpha, mass, inertia, count));
+    lattice_ledger_keep(ledger, plane, i,
+        lattice_work_split(sum, e, c, a, b, end, begin, word, alpha, mass, inertia, count));
 }
 
-/* c: as the stage finds it. last: planes of the accelerations of the stage before, Nystrom's alone. */
-LAW void link_account_stage(struct lattice_effort e, struct link_cell c, vec3 a, vec3 b, int word, __global const real *cell,
-    struct lattice_stage stage, struct lattice_speed speed, __global real *last, __global double *ledger, size_t plane, size_t i)
+/* c: as the stage finds it. last: planes of the accelerations of the stage before, Nystrom's
+ * alone. */
+LAW void link_account_stage(struct lattice_effort e, struct link_cell c, vec3 a, vec3 b, int word,
+    __global const real *cell, struct lattice_stage stage, struct lattice_speed speed,
+    __global real *last, __global double *ledger, size_t plane, size_t i)
 {
     struct lattice_ledger sum = lattice_ledger_of(ledger, plane, i);
     double alpha = (double)cell[6], mass = 1.0 / (double)cell[0], inertia = 1.0 / (double)cell[1];
@@ -81,7 +87,8 @@ LAW void link_account_stage(struct lattice_effort e, struct link_cell c, vec3 a,
         last[4 * plane + i] = b.y;
         last[5 * plane + i] = b.z;
     }
-    lattice_ledger_keep(ledger, plane, i, lattice_work_stage(sum, e, c, word, alpha, mass, inertia, (double)stage.sum_k));
+    lattice_ledger_keep(ledger, plane, i,
+        lattice_work_stage(sum, e, c, word, alpha, mass, inertia, (double)stage.sum_k));
 }
 #endif
 

@@ -9,20 +9,25 @@
 LAW real account_face(int face, struct lattice_view s, size_t l, int word, struct link_cell me)
 {
     size_t j = lattice_beside(s, face, l);
-    return account_link(face, LATTICE_LINKS(word) >> face & 1, me, lattice_cell(s, j), lattice_constants(s, face, 1, word, j));
+    return account_link(face, LATTICE_LINKS(word) >> face & 1, me, lattice_cell(s, j),
+        lattice_constants(s, face, 1, word, j));
 }
 
 /* Links and volume of a cell [J]. */
-LAW void account_elastic(struct lattice_view s, size_t l, int word, struct link_cell c, struct lattice_load load, __global const real *cell,
-    real *links, real *volume, real *faces)
+LAW void account_elastic(struct lattice_view s, size_t l, int word, struct link_cell c,
+    struct lattice_load load, __global const real *cell, real *links, real *volume, real *faces)
 {
     struct volume_constants k;
     real sum = 0;
-    *links = account_face(0, s, l, word, c) + account_face(1, s, l, word, c) + account_face(2, s, l, word, c);
-    *links += account_face(3, s, l, word, c) + account_face(4, s, l, word, c) + account_face(5, s, l, word, c);
+    *links = account_face(0, s, l, word, c) + account_face(1, s, l, word, c) +
+             account_face(2, s, l, word, c);
+    *links += account_face(3, s, l, word, c) + account_face(4, s, l, word, c) +
+              account_face(5, s, l, word, c);
     if (WITH_VOLUME) {
-        sum = lattice_part(0, 1, s, l, word, c, 0) + lattice_part(1, 1, s, l, word, c, 0) + lattice_part(2, 1, s, l, word, c, 0);
-        sum += lattice_part(3, 1, s, l, word, c, 0) + lattice_part(4, 1, s, l, word, c, 0) + lattice_part(5, 1, s, l, word, c, 0);
+        sum = lattice_part(0, 1, s, l, word, c, 0) + lattice_part(1, 1, s, l, word, c, 0) +
+              lattice_part(2, 1, s, l, word, c, 0);
+        sum += lattice_part(3, 1, s, l, word, c, 0) + lattice_part(4, 1, s, l, word, c, 0) +
+               lattice_part(5, 1, s, l, word, c, 0);
     }
     k.lambda = cell[2];
     k.per_4g = cell[3];
@@ -33,14 +38,17 @@ LAW void account_elastic(struct lattice_view s, size_t l, int word, struct link_
 }
 
 #if WITH_BREAK
-/* What the cell has more with the links `gone` than without them [J]; the work that tractions on its faces do as these go is taken off. */
-LAW double account_release(struct lattice_view s, size_t l, int word, int gone, struct lattice_load load, __global const real *cell)
+/* What the cell has more with the links `gone` than without them [J]; the work that tractions on
+ * its faces do as these go is taken off. */
+LAW double account_release(struct lattice_view s, size_t l, int word, int gone,
+    struct lattice_load load, __global const real *cell)
 {
     struct link_cell c = lattice_cell(s, s.begin + l);
     real links[2], volume[2], faces[2];
     account_elastic(s, l, word & ~gone, c, load, cell, &links[0], &volume[0], &faces[0]);
     account_elastic(s, l, word | gone, c, load, cell, &links[1], &volume[1], &faces[1]);
-    return 0.5 * ((double)links[1] - (double)links[0]) + ((double)volume[1] - (double)volume[0]) - ((double)faces[1] - (double)faces[0]);
+    return 0.5 * ((double)links[1] - (double)links[0]) + ((double)volume[1] - (double)volume[0]) -
+           ((double)faces[1] - (double)faces[0]);
 }
 #endif
 #endif

@@ -1,9 +1,11 @@
-/* The lattice: forces of the six links of each owned cell, loads, and the cell's next state, in one pass. No atomics, no sums across cells: each link
- * is evaluated at both ends, from exact copies, in the same order.
+/* The lattice: forces of the six links of each owned cell, loads, and the cell's next state, in one
+ * pass. No atomics, no sums across cells: each link is evaluated at both ends, from exact copies,
+ * in the same order.
  *
- * One work-group per run of BATCH cells (lattice_view.h). Positions go from one set of planes to another, since neighbours still read the old ones;
- * velocities stay in place unless links are damped. A run of one material without loads or fixed DOF needs no table per cell and has a loop of its
- * own.
+ * One work-group per run of BATCH cells (lattice_view.h). Positions go from one set of planes to
+ * another, since neighbours still read the old ones; velocities stay in place unless links are
+ * damped. A run of one material without loads or fixed DOF needs no table per cell and has a loop
+ * of its own.
  *
  * lint: WITH_ENERGY needs fp64
  * lint: WITH_SHEAR_APART requires WITH_VOLUME
@@ -12,16 +14,18 @@
 
 /* Accelerations of a cell, and what holds it. */
 struct lattice_pull {
-    vec3 a, b;               /* [m/s2] [rad/s2] */
-    vec3 given_v, given_w;   /* of fixed DOF: during the drift, or at the next stage [m/s] [rad/s] */
-    vec3 now_v, now_w;       /* of fixed DOF at this stage; Runge-Kutta's alone */
+    vec3 a, b; /* [m/s2] [rad/s2] */
+    /* of fixed DOF: during the drift, or at the next stage [m/s] [rad/s] */
+    vec3 given_v, given_w;
+    vec3 now_v, now_w; /* of fixed DOF at this stage; Runge-Kutta's alone */
 #if WITH_ENERGY
     struct lattice_effort effort;
 #endif
 };
 
-LAW struct lattice_pull lattice_pull_of(int mixed, struct lattice_view s, size_t l, int word, struct link_cell me, __global const real *cell,
-                                        __global const int *row, __global const real *rows, vec3 gravity)
+LAW struct lattice_pull lattice_pull_of(int mixed, struct lattice_view s, size_t l, int word,
+    struct link_cell me, __global const real *cell, __global const int *row,
+    __global const real *rows, vec3 gravity)
 {
     struct lattice_pull r;
     struct link_share sum = lattice_links(mixed, s, l, word, me);
@@ -41,12 +45,14 @@ LAW struct lattice_pull lattice_pull_of(int mixed, struct lattice_view s, size_t
         r.now_v = load.now_v;
         r.now_w = load.now_w;
     }
-    r.a = WITH_GRAVITY || (WITH_LOADS && mixed) ? v3_fma(cell[0], sum.force, add) : v3_scale(cell[0], sum.force);
+    r.a = WITH_GRAVITY || (WITH_LOADS && mixed) ? v3_fma(cell[0], sum.force, add)
+                                                : v3_scale(cell[0], sum.force);
     r.b = v3_scale(cell[1], sum.torque);
     return r;
 }
 
-LAW void lattice_keep(__global preal *x, __global real *v, size_t plane, size_t i, struct link_cell c)
+LAW void lattice_keep(
+    __global preal *x, __global real *v, size_t plane, size_t i, struct link_cell c)
 {
     x[i] = c.u.x;
     x[plane + i] = c.u.y;
@@ -71,7 +77,8 @@ LAW void lattice_keep(__global preal *x, __global real *v, size_t plane, size_t 
 
 #if !WITH_RK
 /* Kick, kick, drift. `kick`: row of the table for the cell's kind. */
-LAW struct link_cell lattice_move(int mixed, struct link_cell c, struct lattice_pull pull, int word, __global const real *kick, preal drift)
+LAW struct link_cell lattice_move(int mixed, struct link_cell c, struct lattice_pull pull, int word,
+    __global const real *kick, preal drift)
 {
     c.v = lattice_kick(c.v, pull.a, kick[0], kick[1]);
     c.v = lattice_kick(c.v, pull.a, kick[KICK_PART], kick[KICK_PART + 1]);
@@ -84,7 +91,8 @@ LAW struct link_cell lattice_move(int mixed, struct link_cell c, struct lattice_
     return lattice_drift(c, drift);
 }
 #else
-LAW struct lattice_sums lattice_sums_of(__global const preal *sum_x, __global const real *sum_v, size_t plane, size_t i, int is_first)
+LAW struct lattice_sums lattice_sums_of(
+    __global const preal *sum_x, __global const real *sum_v, size_t plane, size_t i, int is_first)
 {
     struct lattice_sums s, zero = lattice_sums_zero();
     s.u = p3(sum_x[i], sum_x[plane + i], sum_x[2 * plane + i]);
@@ -101,7 +109,8 @@ LAW struct lattice_sums lattice_sums_of(__global const preal *sum_x, __global co
     return s;
 }
 
-LAW void lattice_sums_keep(__global preal *sum_x, __global real *sum_v, size_t plane, size_t i, struct lattice_sums s)
+LAW void lattice_sums_keep(
+    __global preal *sum_x, __global real *sum_v, size_t plane, size_t i, struct lattice_sums s)
 {
     sum_x[i] = s.u.x;
     sum_x[plane + i] = s.u.y;
@@ -123,8 +132,9 @@ LAW void lattice_sums_keep(__global preal *sum_x, __global real *sum_v, size_t p
 }
 
 /* alpha: mass-proportional damping of the cell's kind [1/s]. */
-LAW struct link_cell lattice_advance(int mixed, struct link_cell c, struct link_cell start, struct lattice_pull pull, int word, real alpha,
-                                     struct lattice_stage stage, struct lattice_sums *sum)
+LAW struct link_cell lattice_advance(int mixed, struct link_cell c, struct link_cell start,
+    struct lattice_pull pull, int word, real alpha, struct lattice_stage stage,
+    struct lattice_sums *sum)
 {
     vec3 zero = v3(0, 0, 0), mean_v, mean_w;
     int held = (WITH_FIX || WITH_LOADS) && mixed;
@@ -143,8 +153,10 @@ LAW struct link_cell lattice_advance(int mixed, struct link_cell c, struct link_
     mean_v = c.v;
     mean_w = c.w;
     if (held) {
-        mean_v = lattice_hold(mean_v, word, WORD_FIX, v3_scale((real)0.5, v3_add(pull.now_v, pull.given_v)));
-        mean_w = lattice_hold(mean_w, word, WORD_FIX + 3, v3_scale((real)0.5, v3_add(pull.now_w, pull.given_w)));
+        mean_v = lattice_hold(
+            mean_v, word, WORD_FIX, v3_scale((real)0.5, v3_add(pull.now_v, pull.given_v)));
+        mean_w = lattice_hold(
+            mean_w, word, WORD_FIX + 3, v3_scale((real)0.5, v3_add(pull.now_w, pull.given_w)));
     }
     c = lattice_stage_next(c, start, pull.a, pull.b, mean_v, mean_w, stage, sum);
     if (held) {
@@ -157,24 +169,24 @@ LAW struct link_cell lattice_advance(int mixed, struct link_cell c, struct link_
 
 /* One cell of the run. */
 #if WITH_ENERGY && WITH_RK
-#define ACCOUNT(mixed, kind)                                                                                                                         \
-    link_account_stage(pull.effort, c, pull.a, pull.b, (mixed) ? word_i : 0, cell + (kind)*CELL_WIDTH, stage, speed, sum_v + LATTICE_V * s.plane,    \
-                       ledger, s.plane, i)
+#define ACCOUNT(mixed, kind)                                                                       \
+    link_account_stage(pull.effort, c, pull.a, pull.b, (mixed) ? word_i : 0,                       \
+        cell + (kind)*CELL_WIDTH, stage, speed, sum_v + LATTICE_V * s.plane, ledger, s.plane, i)
 #elif WITH_ENERGY
-#define ACCOUNT(mixed, kind)                                                                                                                         \
-    link_account_kicks(pull.effort, c, pull.a, pull.b, (mixed) ? word_i : 0, cell + (kind)*CELL_WIDTH, kick + (kind)*KICK_WIDTH, count, ledger,      \
-                       s.plane, i)
+#define ACCOUNT(mixed, kind)                                                                       \
+    link_account_kicks(pull.effort, c, pull.a, pull.b, (mixed) ? word_i : 0,                       \
+        cell + (kind)*CELL_WIDTH, kick + (kind)*KICK_WIDTH, count, ledger, s.plane, i)
 #else
 #define ACCOUNT(mixed, kind)
 #endif
 #if WITH_RK
-#define NEXT(mixed, kind)                                                                                                                            \
-    struct lattice_view s0 = s;                                                                                                                      \
-    s0.x = x + start_x;                                                                                                                              \
-    s0.v = v + start_v;                                                                                                                              \
-    struct link_cell start = lattice_moving(s0, i, lattice_cell(s0, i));                                                                             \
-    struct lattice_sums sum = lattice_sums_of(sum_x, sum_v, s.plane, i, stage.is_first);                                                             \
-    c = lattice_advance(mixed, c, start, pull, word_i, cell[(kind)*CELL_WIDTH + 6], stage, &sum);                                                    \
+#define NEXT(mixed, kind)                                                                          \
+    struct lattice_view s0 = s;                                                                    \
+    s0.x = x + start_x;                                                                            \
+    s0.v = v + start_v;                                                                            \
+    struct link_cell start = lattice_moving(s0, i, lattice_cell(s0, i));                           \
+    struct lattice_sums sum = lattice_sums_of(sum_x, sum_v, s.plane, i, stage.is_first);           \
+    c = lattice_advance(mixed, c, start, pull, word_i, cell[(kind)*CELL_WIDTH + 6], stage, &sum);  \
     lattice_sums_keep(sum_x, sum_v, s.plane, i, sum)
 #else
 #define NEXT(mixed, kind) c = lattice_move(mixed, c, pull, word_i, kick + (kind)*KICK_WIDTH, drift)
@@ -187,75 +199,78 @@ LAW struct link_cell lattice_advance(int mixed, struct link_cell c, struct link_
 #define AHEAD_X(p, n) lattice_fetch((p) + at, sizeof(preal), s.plane, n)
 #define AHEAD_V(p) lattice_fetch((p) + at, sizeof(real), s.plane, LATTICE_V)
 #if WITH_RK
-#define AHEAD_SUMS                                                                                                                                   \
-    do {                                                                                                                                             \
-        AHEAD_X(x + start_x, LATTICE_X(WITH_TURN));                                                                                                  \
-        AHEAD_V(v + start_v);                                                                                                                        \
-        AHEAD_V(v + v_out);                                                                                                                          \
-        AHEAD_X(sum_x, WITH_TURN ? 9 : 6);                                                                                                           \
-        AHEAD_V(sum_v);                                                                                                                              \
+#define AHEAD_SUMS                                                                                 \
+    do {                                                                                           \
+        AHEAD_X(x + start_x, LATTICE_X(WITH_TURN));                                                \
+        AHEAD_V(v + start_v);                                                                      \
+        AHEAD_V(v + v_out);                                                                        \
+        AHEAD_X(sum_x, WITH_TURN ? 9 : 6);                                                         \
+        AHEAD_V(sum_v);                                                                            \
     } while (0)
 #else
 #define AHEAD_SUMS
 #endif
-#define AHEAD(piece)                                                                                                                                 \
-    do {                                                                                                                                             \
-        size_t ahead = (piece) + PIECES_AHEAD * BATCH_WIDTH, at = s.begin + ahead;                                                                   \
-        lattice_fetch(s.x + s.base[3] + ahead, sizeof(preal), s.plane, LATTICE_X(WITH_TURN));                                                        \
-        AHEAD_V(s.v);                                                                                                                                \
-        AHEAD_X(x + x_out, LATTICE_X(WITH_TURN));                                                                                                    \
-        AHEAD_SUMS;                                                                                                                                  \
+#define AHEAD(piece)                                                                               \
+    do {                                                                                           \
+        size_t ahead = (piece) + PIECES_AHEAD * BATCH_WIDTH, at = s.begin + ahead;                 \
+        lattice_fetch(s.x + s.base[3] + ahead, sizeof(preal), s.plane, LATTICE_X(WITH_TURN));      \
+        AHEAD_V(s.v);                                                                              \
+        AHEAD_X(x + x_out, LATTICE_X(WITH_TURN));                                                  \
+        AHEAD_SUMS;                                                                                \
     } while (0)
-#define RUN(mixed, kind)                                                                                                                             \
-    FOR_PIECES (piece) {                                                                                                                             \
-        AHEAD(piece);                                                                                                                                \
-        BATCH_VECTOR                                                                                                                                 \
-        FOR_PIECE (l, piece) {                                                                                                                       \
-            size_t i = s.begin + l;                                                                                                                  \
-            int word_i = word[i];                                                                                                                    \
-            struct link_cell c = lattice_moving(s, i, lattice_cell(s, i));                                                                           \
-            struct lattice_pull pull = lattice_pull_of(mixed, s, l, word_i, c, cell + (kind)*CELL_WIDTH, ROWS, gravity);                             \
-            ACCOUNT(mixed, kind);                                                                                                                    \
-            NEXT(mixed, kind);                                                                                                                       \
-            lattice_keep(x + x_out, v + v_out, s.plane, i, c);                                                                                       \
-        }                                                                                                                                            \
+#define RUN(mixed, kind)                                                                           \
+    FOR_PIECES (piece) {                                                                           \
+        AHEAD(piece);                                                                              \
+        BATCH_VECTOR                                                                               \
+        FOR_PIECE (l, piece) {                                                                     \
+            size_t i = s.begin + l;                                                                \
+            int word_i = word[i];                                                                  \
+            struct link_cell c = lattice_moving(s, i, lattice_cell(s, i));                         \
+            struct lattice_pull pull =                                                             \
+                lattice_pull_of(mixed, s, l, word_i, c, cell + (kind)*CELL_WIDTH, ROWS, gravity);  \
+            ACCOUNT(mixed, kind);                                                                  \
+            NEXT(mixed, kind);                                                                     \
+            lattice_keep(x + x_out, v + v_out, s.plane, i, c);                                     \
+        }                                                                                          \
     }
 
-/* Runs list[first] to list[first + n - 1]. info: of runs (RUN_MIXED). x_in, x_out, v_in, v_out: first
- * numbers of sets of planes. */
-__kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1)))
-void link_force(int first, int n, __global const int *list, __global const int *info, __global const int *base, __global const int *word,
-                int n_run, int n_kind, long plane, __global preal *restrict x, long x_in, long x_out, __global real *restrict v, long v_in,
-                long v_out,
-                __global const real *link, __global const real *cell,
+/* Runs list[first] to list[first + n - 1]. info: of runs (RUN_MIXED). x_in, x_out, v_in, v_out:
+ * first numbers of sets of planes. */
+__kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void link_force(
+    int first, int n, __global const int *list, __global const int *info, __global const int *base,
+    __global const int *word, int n_run, int n_kind, long plane, __global preal *restrict x,
+    long x_in, long x_out, __global real *restrict v, long v_in, long v_out,
+    __global const real *link, __global const real *cell,
 #if WITH_VOLUME
-                __global const real *p,
+    __global const real *p,
 #endif
 #if WITH_GRAVITY
-                real gravity_x, real gravity_y, real gravity_z,
+    real gravity_x, real gravity_y, real gravity_z,
 #endif
 #if WITH_LOADS
-                __global const int *row, __global const real *rows, int at_rows,
+    __global const int *row, __global const real *rows, int at_rows,
 #endif
 #if WITH_ENERGY
-                __global double *restrict ledger,
+    __global double *restrict ledger,
 #if WITH_RK
-                real c_before, real c_own,
+    real c_before, real c_own,
 #else
-                int count,
+    int count,
 #endif
 #endif
 #if WITH_RK
-                long start_x, long start_v, __global preal *restrict sum_x, __global real *restrict sum_v, preal c_sum_v, preal c_sum_a,
-                preal c_next_v, preal c_next_a, preal c_next_turn, preal c_sum_turn, real c_sum_k, real c_next_k, int is_first, int is_last
+    long start_x, long start_v, __global preal *restrict sum_x, __global real *restrict sum_v,
+    preal c_sum_v, preal c_sum_a, preal c_next_v, preal c_next_a, preal c_next_turn,
+    preal c_sum_turn, real c_sum_k, real c_next_k, int is_first, int is_last
 #else
-                __global const real *kick_table, int at_kick, preal drift
+    __global const real *kick_table, int at_kick, preal drift
 #endif
 )
 {
     if (get_group_id(0) >= (size_t)n) return;
     int run = list[first + get_group_id(0)], what = info[run];
-    struct lattice_view s = lattice_view_of(x + x_in, v + v_in, word, link, base, run, n_run, n_kind, what & (RUN_MIXED - 1), (size_t)plane);
+    struct lattice_view s = lattice_view_of(x + x_in, v + v_in, word, link, base, run, n_run,
+        n_kind, what & (RUN_MIXED - 1), (size_t)plane);
     vec3 gravity = v3(0, 0, 0);
 #if WITH_VOLUME
     s.p = p;
@@ -264,7 +279,8 @@ void link_force(int first, int n, __global const int *list, __global const int *
     gravity = v3(gravity_x, gravity_y, gravity_z);
 #endif
 #if WITH_RK
-    struct lattice_stage stage = {c_sum_v, c_sum_a, c_next_v, c_next_a, c_next_turn, c_sum_turn, c_sum_k, c_next_k, is_first, is_last, WITH_NYSTROM};
+    struct lattice_stage stage = {c_sum_v, c_sum_a, c_next_v, c_next_a, c_next_turn, c_sum_turn,
+        c_sum_k, c_next_k, is_first, is_last, WITH_NYSTROM};
 #if WITH_ENERGY
     struct lattice_speed speed = {c_before, c_own};
 #endif
@@ -281,13 +297,13 @@ void link_force(int first, int n, __global const int *list, __global const int *
 
 #if !WITH_RK
 /* A drift that no force precedes, in place. */
-__kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1)))
-void lattice_first(int first, int n, __global const int *list, __global const int *word, long plane, __global preal *restrict x, long x_in,
-                   __global real *restrict v, long v_in,
+__kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void lattice_first(int first,
+    int n, __global const int *list, __global const int *word, long plane,
+    __global preal *restrict x, long x_in, __global real *restrict v, long v_in,
 #if WITH_LOADS
-                   __global const int *row, __global const real *rows, int at_rows,
+    __global const int *row, __global const real *rows, int at_rows,
 #endif
-                   preal drift)
+    preal drift)
 {
     if (get_group_id(0) >= (size_t)n) return;
     struct lattice_view s;

@@ -1,11 +1,12 @@
-/* Stress of each owned cell from the forces of its links and loads: those that move it, evaluated once more (lattice_through.h). Runs as
- * link_force.cl.
+/* Stress of each owned cell from the forces of its links and loads: those that move it, evaluated
+ * once more (lattice_through.h). Runs as link_force.cl.
  *
  * lint: WITH_SHEAR_APART requires WITH_VOLUME */
 #include "lattice_through.h"
 #include "lattice_view.h"
 
-LAW struct lattice_through lattice_through_of(int mixed, struct lattice_view s, size_t l, int word, struct link_cell me)
+LAW struct lattice_through lattice_through_of(
+    int mixed, struct lattice_view s, size_t l, int word, struct link_cell me)
 {
     struct lattice_through f;
     f.x[0] = lattice_face(0, mixed, s, l, word, me).force;
@@ -17,7 +18,8 @@ LAW struct lattice_through lattice_through_of(int mixed, struct lattice_view s, 
     return f;
 }
 
-LAW void lattice_stress_keep(__global real *stress, size_t plane, size_t i, struct stress s, real von_mises)
+LAW void lattice_stress_keep(
+    __global real *stress, size_t plane, size_t i, struct stress s, real von_mises)
 {
     stress[i] = s.xx;
     stress[plane + i] = s.yy;
@@ -37,34 +39,40 @@ LAW struct lattice_load lattice_load_at(__global const real *at)
 }
 #define LOAD_OF(i) lattice_load_at(rows + at_rows + (size_t)row[i] * LOAD_WIDTH)
 #else
-#define LOAD_OF(i) {.traction = 0}
+#define LOAD_OF(i)                                                                                 \
+    {                                                                                              \
+        .traction = 0                                                                              \
+    }
 #endif
-#define RUN(mixed)                                                                                                                                   \
-    BATCH_VECTOR                                                                                                                                     \
-    FOR_BATCH (l, BATCH) {                                                                                                                           \
-        size_t i = s.begin + l;                                                                                                                      \
-        int word_i = word[i];                                                                                                                        \
-        struct link_cell c = lattice_moving(s, i, lattice_cell(s, i));                                                                               \
-        struct lattice_load load = LOAD_OF(i);                                                                                                       \
-        struct stress r = lattice_stress_of(lattice_through_of(mixed, s, l, word_i, c), c, load, LATTICE_LINKS(word_i), s.k.h, extrapolate);         \
-        lattice_stress_keep(stress, s.plane, i, lattice_stress_world(r, c), stress_von_mises(r));                                                    \
+#define RUN(mixed)                                                                                 \
+    BATCH_VECTOR                                                                                   \
+    FOR_BATCH (l, BATCH) {                                                                         \
+        size_t i = s.begin + l;                                                                    \
+        int word_i = word[i];                                                                      \
+        struct link_cell c = lattice_moving(s, i, lattice_cell(s, i));                             \
+        struct lattice_load load = LOAD_OF(i);                                                     \
+        struct stress r = lattice_stress_of(lattice_through_of(mixed, s, l, word_i, c), c, load,   \
+            LATTICE_LINKS(word_i), s.k.h, extrapolate);                                            \
+        lattice_stress_keep(stress, s.plane, i, lattice_stress_world(r, c), stress_von_mises(r));  \
     }
 
 /* stress [7][plane]: xx, yy, zz, yz, zx, xy, von Mises [Pa]. */
-__kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1)))
-void link_stress(int n, __global const int *list, __global const int *info, __global const int *base, __global const int *word, int n_run,
-                 int n_kind, long plane, __global const preal *x, long x_in, __global const real *v, long v_in, __global const real *link,
+__kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void link_stress(int n,
+    __global const int *list, __global const int *info, __global const int *base,
+    __global const int *word, int n_run, int n_kind, long plane, __global const preal *x, long x_in,
+    __global const real *v, long v_in, __global const real *link,
 #if WITH_VOLUME
-                 __global const real *p,
+    __global const real *p,
 #endif
 #if WITH_LOADS
-                 __global const int *row, __global const real *rows, int at_rows,
+    __global const int *row, __global const real *rows, int at_rows,
 #endif
-                 int extrapolate, __global real *restrict stress)
+    int extrapolate, __global real *restrict stress)
 {
     if (get_group_id(0) >= (size_t)n) return;
     int run = list[get_group_id(0)], what = info[run];
-    struct lattice_view s = lattice_view_of(x + x_in, v + v_in, word, link, base, run, n_run, n_kind, what & (RUN_MIXED - 1), (size_t)plane);
+    struct lattice_view s = lattice_view_of(x + x_in, v + v_in, word, link, base, run, n_run,
+        n_kind, what & (RUN_MIXED - 1), (size_t)plane);
 #if WITH_VOLUME
     s.p = p;
 #endif

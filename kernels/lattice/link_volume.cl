@@ -1,10 +1,12 @@
-/* The volumetric pass: p = lambda Th of each cell, from its six links. Runs as link_force.cl. Ghosts that owned cells are linked to get theirs here
- * too, from their own neighbours, in the same order as on the rank that owns them. The balance of energy needs p without dashpots beside it, in a
- * second plane. */
+/* The volumetric pass: p = lambda Th of each cell, from its six links. Runs as link_force.cl.
+ * Ghosts that owned cells are linked to get theirs here too, from their own neighbours, in the same
+ * order as on the rank that owns them. The balance of energy needs p without dashpots beside it, in
+ * a second plane. */
 #include "lattice_view.h"
 
 /* still: without dashpots. */
-LAW real lattice_pressure(int still, int mixed, struct lattice_view s, size_t l, int word, __global const real *cell, real traction)
+LAW real lattice_pressure(int still, int mixed, struct lattice_view s, size_t l, int word,
+    __global const real *cell, real traction)
 {
     struct volume_constants c;
     struct link_cell me = lattice_cell(s, s.begin + l);
@@ -30,30 +32,33 @@ LAW real lattice_pressure(int still, int mixed, struct lattice_view s, size_t l,
 #define TRACTION(i) 0
 #endif
 
-#define VOLUMES(mixed, constants, traction)                                                                                                          \
-    FOR_PIECES (piece) {                                                                                                                             \
-        lattice_fetch(s.x + s.base[3] + piece + PIECES_AHEAD * BATCH_WIDTH, sizeof(preal), s.plane, LATTICE_X(WITH_TURN));                           \
-        BATCH_VECTOR                                                                                                                                 \
-        FOR_PIECE (l, piece) {                                                                                                                       \
-            size_t i = s.begin + l;                                                                                                                  \
-            __global const real *at = constants;                                                                                                     \
-            p[i] = lattice_pressure(0, mixed, s, l, word[i], at, traction);                                                                          \
-            if (WITH_ENERGY && WITH_LINK_DAMPING) p[s.plane + i] = lattice_pressure(1, mixed, s, l, word[i], at, traction);                          \
-        }                                                                                                                                            \
+#define VOLUMES(mixed, constants, traction)                                                        \
+    FOR_PIECES (piece) {                                                                           \
+        lattice_fetch(s.x + s.base[3] + piece + PIECES_AHEAD * BATCH_WIDTH, sizeof(preal),         \
+            s.plane, LATTICE_X(WITH_TURN));                                                        \
+        BATCH_VECTOR                                                                               \
+        FOR_PIECE (l, piece) {                                                                     \
+            size_t i = s.begin + l;                                                                \
+            __global const real *at = constants;                                                   \
+            p[i] = lattice_pressure(0, mixed, s, l, word[i], at, traction);                        \
+            if (WITH_ENERGY && WITH_LINK_DAMPING)                                                  \
+                p[s.plane + i] = lattice_pressure(1, mixed, s, l, word[i], at, traction);          \
+        }                                                                                          \
     }
 
-__kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1)))
-void link_volume(int first, int n, __global const int *list, __global const int *info, __global const int *base, __global const int *word,
-                 int n_run, int n_kind, long plane, __global const preal *x, long x_in, __global const real *v, long v_in,
-                 __global const real *link, __global const real *cell,
+__kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void link_volume(int first, int n,
+    __global const int *list, __global const int *info, __global const int *base,
+    __global const int *word, int n_run, int n_kind, long plane, __global const preal *x, long x_in,
+    __global const real *v, long v_in, __global const real *link, __global const real *cell,
 #if WITH_LOADS
-                 __global const int *row, __global const real *rows, int at_rows,
+    __global const int *row, __global const real *rows, int at_rows,
 #endif
-                 __global real *restrict p)
+    __global real *restrict p)
 {
     if (get_group_id(0) >= (size_t)n) return;
     int run = list[first + get_group_id(0)], what = info[run], kind = what & (RUN_MIXED - 1);
-    struct lattice_view s = lattice_view_of(x + x_in, v + v_in, word, link, base, run, n_run, n_kind, kind, (size_t)plane);
+    struct lattice_view s = lattice_view_of(
+        x + x_in, v + v_in, word, link, base, run, n_run, n_kind, kind, (size_t)plane);
     if ((WITH_KINDS || WITH_LOADS) && what >= RUN_MIXED) {
         VOLUMES(1, cell + LATTICE_KIND(word[i]) * CELL_WIDTH, (real)TRACTION(i))
     } else {

@@ -1,17 +1,22 @@
-/* One row of loads: what acts on a cell besides links and gravity. Row 0 is no load. Shared by host and device. */
+/* One row of loads: what acts on a cell besides links and gravity. Row 0 is no load. Shared by host
+ * and device. */
 #ifndef DEMOCLES_LOADS_H
 #define DEMOCLES_LOADS_H
 
 enum {
-    LOAD_FORCE = 0,         /* 3: world, on the centre [N] */
-    LOAD_LEVER = 3,         /* 9: L_x, L_y, L_z, world forces times h/2; torque = sum over axes a of (R e_a) x L_a [N m] */
+    LOAD_FORCE = 0, /* 3: world, on the centre [N] */
+    /* 9: L_x, L_y, L_z, world forces times h/2; torque = sum over axes a of (R e_a) x L_a [N m] */
+    LOAD_LEVER = 3,
     LOAD_BODY = 12,         /* 3: force that turns with the cell (pressure), R B [N] */
     LOAD_TRACTION = 15,     /* 1: sum over pressed faces of t.n, for Th [Pa] */
     LOAD_ACCELERATION = 16, /* 3: not divided by mass [m/s2] */
-    LOAD_NORMAL = 19,       /* 6: what LOAD_TRACTION sums, t.n of each face in the order of the mask of links [Pa]; only what is measured reads it */
-    LOAD_VELOCITY = 25,     /* 6: v and w of DOF that are prescribed (their CELL_FIX bit is set) [m/s] [rad/s] */
-    LOAD_NOW = 31,          /* 6: the same at the time of the forces */
-    LOAD_RATE = 37,         /* 1: change of LOAD_TRACTION, for the balance of energy [Pa/s] */
+    /* 6: what LOAD_TRACTION sums, t.n of each face in the order of the mask of links [Pa]; only
+     * what is measured reads it */
+    LOAD_NORMAL = 19,
+    /* 6: v and w of DOF that are prescribed (their CELL_FIX bit is set) [m/s] [rad/s] */
+    LOAD_VELOCITY = 25,
+    LOAD_NOW = 31,  /* 6: the same at the time of the forces */
+    LOAD_RATE = 37, /* 1: change of LOAD_TRACTION, for the balance of energy [Pa/s] */
     LOAD_WIDTH = 38
 };
 

@@ -2,10 +2,12 @@
  *
  *   x y z radius | vx vy vz 1/m | wx wy wz material          (the last four only WITH_SPIN)
  *
- * One record instead of nine arrays: a pair's partner is one or two cache lines away instead of nine, and a ghost is one contiguous
- * record that arrives without unpacking. Measured on the settled bed: gathers from nine arrays 18 ns per pair, from records 16 ns.
- * Owned elements come first, ghosts after. Velocities are those of the half step between drifts, of the full step when observed.
- * Arguments that kernels take: `__global const preal *position, __global const real *motion`, the same buffer seen with two types. */
+ * One record instead of nine arrays: a pair's partner is one or two cache lines away instead of
+ * nine, and a ghost is one contiguous record that arrives without unpacking. Measured on the
+ * settled bed: gathers from nine arrays 18 ns per pair, from records 16 ns. Owned elements come
+ * first, ghosts after. Velocities are those of the half step between drifts, of the full step when
+ * observed. Arguments that kernels take: `__global const preal *position, __global const real
+ * *motion`, the same buffer seen with two types. */
 #ifndef DEMOCLES_ELEMENT_H
 #define DEMOCLES_ELEMENT_H
 
@@ -40,7 +42,8 @@ typedef double4 preal4;
 #define VXYZ(v) v3((v).s0, (v).s1, (v).s2)
 #endif
 
-/* Difference of two coordinates at most one and a half periods apart, brought to the nearest image. period 0: not periodic. */
+/* Difference of two coordinates at most one and a half periods apart, brought to the nearest image.
+ * period 0: not periodic. */
 LAW preal nearest_image(preal d, preal period)
 {
     preal limit = (preal)0.5 * period;

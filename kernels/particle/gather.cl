@@ -1,10 +1,13 @@
-/* Adds up what acts on each owned element, in ascending order of the partner's global id, then walls, then gravity; and moves it.
+/* Adds up what acts on each owned element, in ascending order of the partner's global id, then
+ * walls, then gravity; and moves it.
  *
- * The order does not depend on ranks, partition or storage, so the bits do not either. The row of an element lists its pairs (incidence.h), in eights
- * that are filled up with a blank pair of force zero: a loop of varying length would cost a processor more in wrong guesses than the blanks do.
+ * The order does not depend on ranks, partition or storage, so the bits do not either. The row of
+ * an element lists its pairs (incidence.h), in eights that are filled up with a blank pair of force
+ * zero: a loop of varying length would cost a processor more in wrong guesses than the blanks do.
  *
- * Two uses. Fused: second kick of this step, first kick and drift of the next, one pass over the state. Observed: second kick only, force and torque
- * kept; output then sees positions and velocities of one time, and kick_drift.cl does the rest, with the same bits.
+ * Two uses. Fused: second kick of this step, first kick and drift of the next, one pass over the
+ * state. Observed: second kick only, force and torque kept; output then sees positions and
+ * velocities of one time, and kick_drift.cl does the rest, with the same bits.
  *
  * lint: WITH_PAIR_ROTATION requires WITH_SPIN
  * lint: WITH_WALL_ROTATION requires WITH_SPIN
@@ -14,7 +17,8 @@
 #include "incidence.h"
 #include "integrate.h"
 
-#define PAIR_WIDTH (WITH_PAIR_ROLLING ? 12 : WITH_PAIR_ROTATION ? 8 : 4) /* RESULT_WIDTH of the pairs' program */
+/* RESULT_WIDTH of the pairs' program */
+#define PAIR_WIDTH (WITH_PAIR_ROLLING ? 12 : WITH_PAIR_ROTATION ? 8 : 4)
 #define WALL_WIDTH (WITH_WALL_ROTATION ? 8 : 4)
 
 #define FLAG_STALE 0
@@ -27,7 +31,8 @@
 #define SIGN(is_down) as_double(0x3ff0000000000000ul | (ulong)(is_down) << 63)
 #endif
 
-/* Adds the result record r of a pair to force and torque; is_down: the element is the higher id (j). */
+/* Adds the result record r of a pair to force and torque; is_down: the element is the higher id
+ * (j). */
 LAW void gather_add(__global const real *r, uint is_down, real4 *f, real4 *t)
 {
     real4 a = vload4(0, r);
@@ -40,21 +45,21 @@ LAW void gather_add(__global const real *r, uint is_down, real4 *f, real4 *t)
     }
 }
 
-__kernel __attribute__((reqd_work_group_size(64, 1, 1)))
-void gather(int n_owned, int observe, __global preal *position, __global real *motion,
-            __global const int *incidence_begin, __global const int *incidence,
-            __global const real *result,
+__kernel __attribute__((reqd_work_group_size(64, 1, 1))) void gather(int n_owned, int observe,
+    __global preal *position, __global real *motion, __global const int *incidence_begin,
+    __global const int *incidence, __global const real *result,
 #if WITH_WALLS
-            __global const int *wall_begin, __global const real *wall_result,
+    __global const int *wall_begin, __global const real *wall_result,
 #endif
 #if !WITH_SIZES
-            real radius, real inverse_m,
+    real radius, real inverse_m,
 #endif
-            real gravity_x, real gravity_y, real gravity_z, preal dt, real half_dt, real margin_dt,
+    real gravity_x, real gravity_y, real gravity_z, preal dt, real half_dt, real margin_dt,
 #if WITH_ORIENTATION
-            __global real *orientation,
+    __global real *orientation,
 #endif
-            __global real *force, __global real *torque, __global const preal *reference, __global int *flags)
+    __global real *force, __global real *torque, __global const preal *reference,
+    __global int *flags)
 {
     int e = get_global_id(0);
     if (e >= n_owned) return;
@@ -108,16 +113,17 @@ void gather(int n_owned, int observe, __global preal *position, __global real *m
 }
 
 /* First kick and drift after an observed step (force of gather) or at the start. */
-__kernel __attribute__((reqd_work_group_size(64, 1, 1)))
-void kick_drift(int n_owned, __global preal *position, __global real *motion,
+__kernel __attribute__((reqd_work_group_size(64, 1, 1))) void kick_drift(int n_owned,
+    __global preal *position, __global real *motion,
 #if !WITH_SIZES
-                real radius, real inverse_m,
+    real radius, real inverse_m,
 #endif
-                real gravity_x, real gravity_y, real gravity_z, preal dt, real half_dt, real margin_dt,
+    real gravity_x, real gravity_y, real gravity_z, preal dt, real half_dt, real margin_dt,
 #if WITH_ORIENTATION
-                __global real *orientation,
+    __global real *orientation,
 #endif
-                __global const real *force, __global const real *torque, __global const preal *reference, __global int *flags)
+    __global const real *force, __global const real *torque, __global const preal *reference,
+    __global int *flags)
 {
     int e = get_global_id(0);
     if (e >= n_owned) return;

@@ -1,8 +1,10 @@
-/* Kick and drift of one element: the leapfrog of physics in one place, for the fused and for the split step.
+/* Kick and drift of one element: the leapfrog of physics in one place, for the fused and for the
+ * split step.
  *
  *   kick   v <- v + (dt/2) (F/m + g),  w <- w + (dt/2) tau/I,  I = 0.4 m r^2 of a sphere
  *   drift  x <- x + dt v
- * Lane 3 of every vector carries something else (radius, 1/m, material) and passes through untouched. */
+ * Lane 3 of every vector carries something else (radius, 1/m, material) and passes through
+ * untouched. */
 #ifndef DEMOCLES_INTEGRATE_H
 #define DEMOCLES_INTEGRATE_H
 
@@ -37,8 +39,8 @@ LAW preal4 drift(preal4 x, real4 v, preal dt)
     return fma((preal4)dt, u, x);
 }
 
-/* Orientation as a quaternion (w, x, y, z): q <- dq q with dq = ((1 - u.u), 2u)/(1 + u.u), u = w dt/4: unit norm without trigonometry,
- * angle error |w dt|^3/48 per step. */
+/* Orientation as a quaternion (w, x, y, z): q <- dq q with dq = ((1 - u.u), 2u)/(1 + u.u), u = w
+ * dt/4: unit norm without trigonometry, angle error |w dt|^3/48 per step. */
 LAW real4 turn(real4 q, real4 w, real dt)
 {
     vec3 u = v3_scale((real)0.25 * dt, v3(w.s0, w.s1, w.s2));
@@ -49,8 +51,9 @@ LAW real4 turn(real4 q, real4 w, real dt)
     return (real4)(s * q.s0 - v3_dot(d, p), r.x, r.y, r.z);
 }
 
-/* Whether the element has, or within margin_dt will have, used up the room that the lists gave it. reference: place when the lists were built, lane 3
- * the room [m]. margin_dt: time until the host can act on the flag [s]. NaN counts as stale: the check that follows finds it. */
+/* Whether the element has, or within margin_dt will have, used up the room that the lists gave it.
+ * reference: place when the lists were built, lane 3 the room [m]. margin_dt: time until the host
+ * can act on the flag [s]. NaN counts as stale: the check that follows finds it. */
 LAW int is_stale(preal4 x, preal4 reference, real4 v, real margin_dt)
 {
     preal4 d = x - reference;

@@ -1,7 +1,9 @@
-/* Forces of pairs: no neighbour loop, no atomics. Each pair writes its own result record; gather.cl adds them up.
+/* Forces of pairs: no neighbour loop, no atomics. Each pair writes its own result record; gather.cl
+ * adds them up.
  *
- * Three phases through local memory, over batches of pairs (batch.h). Loads and stores of whole records are vector loads, which keep a compiler from
- * vectorising a loop; the law between them is pure scalar arithmetic on contiguous local arrays and becomes full-width SIMD code on a CPU. On a
+ * Three phases through local memory, over batches of pairs (batch.h). Loads and stores of whole
+ * records are vector loads, which keep a compiler from vectorising a loop; the law between them is
+ * pure scalar arithmetic on contiguous local arrays and becomes full-width SIMD code on a CPU. On a
  * GPU the phases cost two barriers.
  *
  * lint: WITH_TANGENTIAL_DAMPING requires WITH_TANGENTIAL
@@ -15,10 +17,11 @@
 
 /* Rows of local memory: what the law needs of both elements; the results take their place. */
 #define L_U 0
-#define L_WI 3                                                /* of equal spheres that do not roll: w_i + w_j */
+/* of equal spheres that do not roll: w_i + w_j */
+#define L_WI 3
 #define L_WJ 6
 #define BOTH_SPINS (WITH_SIZES || WITH_ROLLING)
-#define L_SIZE (WITH_ROTATION ? (BOTH_SPINS ? 9 : 6) : 3)     /* r_i r_j 1/m_i 1/m_j */
+#define L_SIZE (WITH_ROTATION ? (BOTH_SPINS ? 9 : 6) : 3) /* r_i r_j 1/m_i 1/m_j */
 #define L_KIND (L_SIZE + (WITH_SIZES ? 4 : 0))
 #define L_ROWS (L_KIND + (WITH_MATERIALS ? 1 : 0))
 #define RESULT_ROWS (WITH_ROLLING ? 9 : WITH_ROTATION ? (WITH_SIZES ? 8 : 6) : 3)
@@ -33,7 +36,8 @@
 #endif
 #if WITH_SIZES
 #define PAIR_SIZES contact_pair_of(LOC(L_SIZE + 2), LOC(L_SIZE + 3), LOC(L_SIZE), LOC(L_SIZE + 1))
-#define PARAMETERS contact_parameters_of(material_load(table + MATERIAL_WIDTH * TABLE_ROW), PAIR_SIZES, dt)
+#define PARAMETERS                                                                                 \
+    contact_parameters_of(material_load(table + MATERIAL_WIDTH * TABLE_ROW), PAIR_SIZES, dt)
 #define RADIUS(k) LOC(L_SIZE + k)
 #elif WITH_MATERIALS
 #define PARAMETERS parameters_load(table + PARAMETER_WIDTH * TABLE_ROW)
@@ -44,9 +48,8 @@
 #endif
 
 /* Differences of positions and velocities, spins, and what sizes and materials there are. */
-LAW void pair_load(int i, int j, __global const preal *position, __global const real *motion, real n_material, __local preal *distance,
-                   __local real *loc,
-                   size_t l)
+LAW void pair_load(int i, int j, __global const preal *position, __global const real *motion,
+    real n_material, __local preal *distance, __local real *loc, size_t l)
 {
     preal4 xi = LOAD_POSITION(i), xj = LOAD_POSITION(j), x = xj - xi;
     real4 vi = LOAD_VELOCITY(i), vj = LOAD_VELOCITY(j), u = vi - vj;
@@ -71,7 +74,8 @@ LAW void pair_load(int i, int j, __global const preal *position, __global const 
 }
 
 /* Force; torques, or couple and levers: see RESULT_WIDTH. */
-LAW void pair_keep(struct contact_kinematics k, struct contact_result r, __local real *loc, size_t l)
+LAW void pair_keep(
+    struct contact_kinematics k, struct contact_result r, __local real *loc, size_t l)
 {
     ROW3_STORE(loc, 0, l, r.force.x, r.force.y, r.force.z);
     if (WITH_ROLLING) {
@@ -96,37 +100,41 @@ LAW void pair_store(__local const real *loc, size_t l, __global real *out)
     if (WITH_ROLLING) vstore4((real4)(LOC(6), LOC(7), LOC(8), (real)0), 2, out);
 }
 
-/* Pairs first <= p < end, first a multiple of BATCH; capacity: between two planes of history and ledger. n_material: edge of the table. */
-__kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1)))
-void pair_force(int first, int end, int capacity, __global const preal *position, __global const real *motion, __global const int *pair_i,
-                __global const int *pair_j,
+/* Pairs first <= p < end, first a multiple of BATCH; capacity: between two planes of history and
+ * ledger. n_material: edge of the table. */
+__kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void pair_force(int first,
+    int end, int capacity, __global const preal *position, __global const real *motion,
+    __global const int *pair_i, __global const int *pair_j,
 #if WITH_HISTORY
-                __global int *restrict state, __global real *restrict history,
+    __global int *restrict state, __global real *restrict history,
 #endif
 #if WITH_ENERGY
-                __global double *restrict ledger,
+    __global double *restrict ledger,
 #endif
 #if WITH_PERIODIC_X || WITH_PERIODIC_Y || WITH_PERIODIC_Z
-                preal period_x, preal period_y, preal period_z,
+    preal period_x, preal period_y, preal period_z,
 #endif
 #if WITH_SIZES || WITH_MATERIALS
-                int n_material, __global const real *restrict table,
+    int n_material, __global const real *restrict table,
 #else
-                PARAMETER_ARGUMENTS,
+    PARAMETER_ARGUMENTS,
 #endif
 #if !WITH_SIZES
-                real radius,
+    real radius,
 #endif
-                __global real *restrict result, real dt)
+    __global real *restrict result, real dt)
 {
     __local real loc[ROWS * BATCH];
     __local preal distance[3 * BATCH];
     size_t base = (size_t)first + get_group_id(0) * BATCH;
-    size_t left = (size_t)end > base ? (size_t)end - base : 0, n = left < BATCH ? left : BATCH, planes = (size_t)capacity;
+    size_t left = (size_t)end > base ? (size_t)end - base : 0, n = left < BATCH ? left : BATCH,
+           planes = (size_t)capacity;
 #if !(WITH_SIZES || WITH_MATERIALS)
     const int n_material = 0;
 #endif
-    FOR_BATCH (l, n) pair_load(pair_i[base + l], pair_j[base + l], position, motion, (real)n_material, distance, loc, l);
+    FOR_BATCH (l, n)
+        pair_load(pair_i[base + l], pair_j[base + l], position, motion, (real)n_material, distance,
+            loc, l);
     BATCH_BARRIER;
     BATCH_VECTOR
     FOR_BATCH (l, n) {
@@ -138,7 +146,8 @@ void pair_force(int first, int end, int capacity, __global const preal *position
         if (WITH_ROTATION) wi = ROW3_LOAD(v3, loc, L_WI, l);
         if (WITH_ROTATION && BOTH_SPINS) wj = ROW3_LOAD(v3, loc, L_WJ, l);
         struct contact_parameters p = PARAMETERS;
-        struct contact_kinematics k = contact_kinematics_pair(D, u, zero, wi, wj, RADIUS(0), RADIUS(1), dt);
+        struct contact_kinematics k =
+            contact_kinematics_pair(D, u, zero, wi, wj, RADIUS(0), RADIUS(1), dt);
         struct contact_history h = HISTORY_LOAD(base, planes, l);
         struct contact_result r = contact_law(k, p, dt, &h);
         HISTORY_STORE(h, base, planes, l);

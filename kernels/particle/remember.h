@@ -1,6 +1,6 @@
-/* Whether a contact has anything to remember: state bits, or a plane of its history that is not zero. A dashpot acts up to half a step before the
- * touch and
- * after it, and with energy accounted for its force is kept, without a state bit. */
+/* Whether a contact has anything to remember: state bits, or a plane of its history that is not
+ * zero. A dashpot acts up to half a step before the touch and after it, and with energy accounted
+ * for its force is kept, without a state bit. */
 #ifndef DEMOCLES_REMEMBER_H
 #define DEMOCLES_REMEMBER_H
 

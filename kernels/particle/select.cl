@@ -1,17 +1,19 @@
-/* Who belongs where: owner of each element by the tree of cuts, elements outside the domain, ghosts for a neighbour, bounds, and the room to move. */
+/* Who belongs where: owner of each element by the tree of cuts, elements outside the domain, ghosts
+ * for a neighbour, bounds, and the room to move. */
 #include "element.h"
 
 #define GROUP 64
 
-/* Wraps periodic coordinates into [low, low + period), in place, and finds the owner: tree of cuts as in partition.h (nodes: axis, left, right).
- * Outside the domain
- * (remove 1): owner -1. stay [n]: 1 where the owner is this rank; leave [n + 1]: 0 where it is. */
-__kernel __attribute__((reqd_work_group_size(GROUP, 1, 1)))
-void select_owner(int n, int rank, int n_node, int remove, __global preal *position, __global const int *node, __global const preal *cut,
+/* Wraps periodic coordinates into [low, low + period), in place, and finds the owner: tree of cuts
+ * as in partition.h (nodes: axis, left, right). Outside the domain (remove 1): owner -1. stay [n]:
+ * 1 where the owner is this rank; leave [n + 1]: 0 where it is. */
+__kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void select_owner(int n, int rank,
+    int n_node, int remove, __global preal *position, __global const int *node,
+    __global const preal *cut,
 #if WITH_PERIODIC_X || WITH_PERIODIC_Y || WITH_PERIODIC_Z
-                  preal period_x, preal period_y, preal period_z,
+    preal period_x, preal period_y, preal period_z,
 #endif
-                  __global const preal *domain, __global int *owner, __global int *stay, __global int *leave)
+    __global const preal *domain, __global int *owner, __global int *stay, __global int *leave)
 {
     int e = get_global_id(0);
     if (e >= n) return;
@@ -43,10 +45,11 @@ void select_owner(int n, int rank, int n_node, int remove, __global preal *posit
     leave[e] = to != rank;
 }
 
-/* reference: place now, lane 3 the room to move, skin + horizon |v| [m]; reach: radius + room + half the range of bonds. */
-__kernel __attribute__((reqd_work_group_size(GROUP, 1, 1)))
-void select_room(int n, __global const preal *position, __global const real *motion, real skin, real horizon, real bond_range,
-                 __global preal *reference, __global preal *reach)
+/* reference: place now, lane 3 the room to move, skin + horizon |v| [m]; reach: radius + room +
+ * half the range of bonds. */
+__kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void select_room(int n,
+    __global const preal *position, __global const real *motion, real skin, real horizon,
+    real bond_range, __global preal *reference, __global preal *reach)
 {
     int e = get_global_id(0);
     if (e >= n) return;
@@ -61,13 +64,13 @@ void select_room(int n, __global const preal *position, __global const real *mot
 /* The larger one; NaN wins, whichever it is, and stays. */
 LAW preal select_worse(preal a, preal b) { return a > b || a != a ? a : b; }
 
-/* Bounds of centres, smallest and largest reach, largest squared velocity: partial [n_group][BOUNDS_WIDTH], each group strides over the elements.
- * Minima are stored
- * negated, so that all are maxima. */
+/* Bounds of centres, smallest and largest reach, largest squared velocity: partial
+ * [n_group][BOUNDS_WIDTH], each group strides over the elements. Minima are stored negated, so that
+ * all are maxima. */
 #define BOUNDS_WIDTH 9
-__kernel __attribute__((reqd_work_group_size(GROUP, 1, 1)))
-void select_bounds(int n, int n_group, __global const preal *position, __global const real *motion, __global const preal *reach,
-                   __global preal *partial)
+__kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void select_bounds(int n, int n_group,
+    __global const preal *position, __global const real *motion, __global const preal *reach,
+    __global preal *partial)
 {
     __local preal loc[BOUNDS_WIDTH * GROUP];
     int l = get_local_id(0), g = get_group_id(0);
@@ -85,7 +88,8 @@ void select_bounds(int n, int n_group, __global const preal *position, __global 
         b[5] = r_max(b[5], x.s2);
         b[6] = r_max(b[6], -r);
         b[7] = r_max(b[7], r);
-        b[8] = select_worse(b[8], s + (s - s) + (x.s0 - x.s0) + (x.s1 - x.s1) + (x.s2 - x.s2)); /* NaN if anything is NaN or infinite */
+        /* NaN if anything is NaN or infinite */
+        b[8] = select_worse(b[8], s + (s - s) + (x.s0 - x.s0) + (x.s1 - x.s1) + (x.s2 - x.s2));
     }
     for (int k = 0; k < BOUNDS_WIDTH; k++) loc[k * GROUP + l] = b[k];
     barrier(CLK_LOCAL_MEM_FENCE);
@@ -106,11 +110,13 @@ LAW preal select_gap(preal x, preal low, preal high, preal period)
     return period > 0 && round < gap ? round : gap;
 }
 
-/* Nodes that wait on the way through a tree of cuts: at most one per level, and a tree is as deep as the logarithm of its leaves. */
+/* Nodes that wait on the way through a tree of cuts: at most one per level, and a tree is as deep
+ * as the logarithm of its leaves. */
 #define SELECT_DEPTH 32
 
 /* Whether the cube of half an edge r round x meets a leaf of the tree that belongs to `rank`. */
-LAW int select_meets(const preal *x, preal r, int rank, int n_node, __global const int *node, __global const preal *cut)
+LAW int select_meets(const preal *x, preal r, int rank, int n_node, __global const int *node,
+    __global const preal *cut)
 {
     int waiting[SELECT_DEPTH], n = 0, to = n_node > 0 ? 0 : -1;
     for (;;) {
@@ -126,9 +132,11 @@ LAW int select_meets(const preal *x, preal r, int rank, int n_node, __global con
     }
 }
 
-/* The same of x and all its images whose cubes reach into the domain (low and high of each axis). */
-LAW int select_meets_image(pvec3 own, preal r, preal period_x, preal period_y, preal period_z, __global const preal *domain, int rank, int n_node,
-                           __global const int *node, __global const preal *cut)
+/* The same of x and all its images whose cubes reach into the domain (low and high of each
+ * axis). */
+LAW int select_meets_image(pvec3 own, preal r, preal period_x, preal period_y, preal period_z,
+    __global const preal *domain, int rank, int n_node, __global const int *node,
+    __global const preal *cut)
 {
     const preal centre[3] = {own.x, own.y, own.z}, period[3] = {period_x, period_y, period_z};
     for (int image = 0; image < 27; image++) {
@@ -136,23 +144,25 @@ LAW int select_meets_image(pvec3 own, preal r, preal period_x, preal period_y, p
         preal x[3];
         for (int a = 0; a < 3; a++) {
             x[a] = centre[a] + (preal)(shift[a] == 2 ? -1 : shift[a]) * period[a];
-            if (shift[a] != 0 && (period[a] <= 0 || x[a] + r < domain[a] || x[a] - r > domain[3 + a])) is_near = 0;
+            if (shift[a] != 0 &&
+                (period[a] <= 0 || x[a] + r < domain[a] || x[a] - r > domain[3 + a]))
+                is_near = 0;
         }
         if (is_near && select_meets(x, r, rank, n_node, node, cut)) return 1;
     }
     return 0;
 }
 
-/* Ghosts for one neighbour, `rank`: at [n + 1] = 1 where the element's reach comes within far_reach of the box of the neighbour's centres and of a
- * leaf that is the neighbour's. */
-__kernel __attribute__((reqd_work_group_size(GROUP, 1, 1)))
-void select_ghosts(int n, int rank, int n_node, __global const preal *position, __global const preal *reach, __global const int *node,
-                   __global const preal *cut, __global const preal *domain, preal low_x, preal low_y, preal low_z, preal high_x,
-                   preal high_y, preal high_z, preal far_reach,
+/* Ghosts for one neighbour, `rank`: at [n + 1] = 1 where the element's reach comes within far_reach
+ * of the box of the neighbour's centres and of a leaf that is the neighbour's. */
+__kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void select_ghosts(int n, int rank,
+    int n_node, __global const preal *position, __global const preal *reach,
+    __global const int *node, __global const preal *cut, __global const preal *domain, preal low_x,
+    preal low_y, preal low_z, preal high_x, preal high_y, preal high_z, preal far_reach,
 #if WITH_PERIODIC_X || WITH_PERIODIC_Y || WITH_PERIODIC_Z
-                   preal period_x, preal period_y, preal period_z,
+    preal period_x, preal period_y, preal period_z,
 #endif
-                   __global int *at)
+    __global int *at)
 {
     int e = get_global_id(0);
     if (e >= n) return;
@@ -160,7 +170,9 @@ void select_ghosts(int n, int rank, int n_node, __global const preal *position, 
 #if !(WITH_PERIODIC_X || WITH_PERIODIC_Y || WITH_PERIODIC_Z)
     const preal period_x = 0, period_y = 0, period_z = 0;
 #endif
-    pvec3 gap = p3(select_gap(x.s0, low_x, high_x, period_x), select_gap(x.s1, low_y, high_y, period_y), select_gap(x.s2, low_z, high_z, period_z));
+    pvec3 gap = p3(select_gap(x.s0, low_x, high_x, period_x),
+        select_gap(x.s1, low_y, high_y, period_y), select_gap(x.s2, low_z, high_z, period_z));
     preal r = (reach[e] + far_reach) * (preal)1.0001;
-    at[e] = p3_dot(gap, gap) < r * r && select_meets_image(XYZ(x), r, period_x, period_y, period_z, domain, rank, n_node, node, cut);
+    at[e] = p3_dot(gap, gap) < r * r && select_meets_image(XYZ(x), r, period_x, period_y, period_z,
+                                            domain, rank, n_node, node, cut);
 }

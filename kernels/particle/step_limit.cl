@@ -1,7 +1,9 @@
-/* The time step that the contacts of now allow: bound of law_limit.h for each owned element, smallest of all.
+/* The time step that the contacts of now allow: bound of law_limit.h for each owned element,
+ * smallest of all.
  *
- * Rare: once per list build. Built with the features of pairs and walls together; materials come as rows for any two, pairs and walls alike. Sums
- * run in ascending global id and then by primitive, so an element's bound has the same bits on any rank.
+ * Rare: once per list build. Built with the features of pairs and walls together; materials come as
+ * rows for any two, pairs and walls alike. Sums run in ascending global id and then by primitive,
+ * so an element's bound has the same bits on any rank.
  *
  * lint: some of WITH_LINEAR WITH_HERTZ
  * lint: WITH_TANGENTIAL_DAMPING requires WITH_TANGENTIAL
@@ -23,7 +25,8 @@ struct limit_element {
     int kind;  /* material */
 };
 
-LAW struct limit_element limit_element_load(__global const preal *position, __global const real *motion, int e, int kind)
+LAW struct limit_element limit_element_load(
+    __global const preal *position, __global const real *motion, int e, int kind)
 {
     struct limit_element a;
     preal4 x = LOAD_POSITION(e);
@@ -40,25 +43,28 @@ LAW struct limit_element limit_element_load(__global const preal *position, __gl
 }
 
 /* D: from the centre to the partner's centre. */
-LAW struct limit_sums limit_add_pair(struct limit_sums s, struct limit_element a, struct limit_element b, pvec3 D, struct contact_material c, real dt,
-                                     real share)
+LAW struct limit_sums limit_add_pair(struct limit_sums s, struct limit_element a,
+    struct limit_element b, pvec3 D, struct contact_material c, real dt, real share)
 {
     struct limit_ends ends;
     preal square = p3_dot(D, D), sum = (preal)a.r + (preal)b.r;
     preal distance = p_sqrt(square);
-    real delta = (real)(sum - distance), inverse = distance > 0 ? (real)1 / (real)distance : (real)0;
+    real delta = (real)(sum - distance),
+         inverse = distance > 0 ? (real)1 / (real)distance : (real)0;
     vec3 n = distance > 0 ? v3_scale(inverse, v3_of_p3(D)) : v3(1, 0, 0);
     ends.w_i = a.w;
     ends.w_j = WITH_SIZES ? b.w : a.w; /* what is the same for all contacts leaves the loop */
     ends.r_i = a.r;
     ends.r_j = WITH_SIZES ? b.r : a.r;
     if (!limit_acts(c, ends, delta)) return s;
-    return limit_sums_add(s, limit_contact_of(c, ends, delta, v3_dot(v3_sub(a.v, b.v), n), dt), ends, n, share);
+    return limit_sums_add(
+        s, limit_contact_of(c, ends, delta, v3_dot(v3_sub(a.v, b.v), n), dt), ends, n, share);
 }
 
 #if WITH_WALLS
-LAW struct limit_sums limit_add_wall(struct limit_sums s, struct limit_element a, struct wall_primitive w, __global const preal *pose,
-                                     struct contact_material c, real dt, real share)
+LAW struct limit_sums limit_add_wall(struct limit_sums s, struct limit_element a,
+    struct wall_primitive w, __global const preal *pose, struct contact_material c, real dt,
+    real share)
 {
     struct limit_ends ends;
     struct wall_closest k;
@@ -66,8 +72,9 @@ LAW struct limit_sums limit_add_wall(struct limit_sums s, struct limit_element a
     real delta;
 #if WITH_MOVING
     k = wall_closest_moved(w, pose_frame(pose), a.x);
-    v = v3_sub(v, wall_velocity(v3((real)pose[12], (real)pose[13], (real)pose[14]), v3((real)pose[15], (real)pose[16], (real)pose[17]),
-                                v3_of_p3(p3_sub(p3_add(a.x, k.D), p3(pose[18], pose[19], pose[20])))));
+    v = v3_sub(v, wall_velocity(v3((real)pose[12], (real)pose[13], (real)pose[14]),
+                      v3((real)pose[15], (real)pose[16], (real)pose[17]),
+                      v3_of_p3(p3_sub(p3_add(a.x, k.D), p3(pose[18], pose[19], pose[20])))));
 #else
     (void)pose;
     k = wall_closest(w, a.x);
@@ -83,24 +90,29 @@ LAW struct limit_sums limit_add_wall(struct limit_sums s, struct limit_element a
 #endif
 
 /* The smaller step, then the smaller id. */
-LAW int limit_is_before(real dt, long id, real other_dt, long other_id) { return dt < other_dt || (!(other_dt < dt) && id < other_id); }
+LAW int limit_is_before(real dt, long id, real other_dt, long other_id)
+{
+    return dt < other_dt || (!(other_dt < dt) && id < other_id);
+}
 
-/* partial [n_group] the smallest bound of the elements that a group strides over, LIMIT_NONE without any contact, and its element's global id.
- * table [n_material][n_material][MATERIAL_WIDTH]; kind: the material of all elements where there is one; dt, share: see law_limit.h. */
-__kernel __attribute__((reqd_work_group_size(GROUP, 1, 1)))
-void step_limit(int n_owned, int n_group, int n_material, int kind, real dt, real share, __global const preal *position,
-                __global const real *motion, __global const long *gid, __global const int *row_begin, __global const int *row,
+/* partial [n_group] the smallest bound of the elements that a group strides over, LIMIT_NONE
+ * without any contact, and its element's global id. table [n_material][n_material][MATERIAL_WIDTH];
+ * kind: the material of all elements where there is one; dt, share: see law_limit.h. */
+__kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void step_limit(int n_owned,
+    int n_group, int n_material, int kind, real dt, real share, __global const preal *position,
+    __global const real *motion, __global const long *gid, __global const int *row_begin,
+    __global const int *row,
 #if WITH_PERIODIC_X || WITH_PERIODIC_Y || WITH_PERIODIC_Z
-                preal period_x, preal period_y, preal period_z,
+    preal period_x, preal period_y, preal period_z,
 #endif
 #if WITH_WALLS
-                __global const int *wall_begin, __global const int *candidate, __global const preal *primitive, __global const int *wall_of,
-                __global const int *wall_material, __global const preal *pose,
+    __global const int *wall_begin, __global const int *candidate, __global const preal *primitive,
+    __global const int *wall_of, __global const int *wall_material, __global const preal *pose,
 #endif
 #if WITH_TRIANGLE
-                __global const int *keep,
+    __global const int *keep,
 #endif
-                __global const real *table, __global real *partial, __global long *partial_gid)
+    __global const real *table, __global real *partial, __global long *partial_gid)
 {
     __local real best_dt[GROUP];
     __local long best_id[GROUP];
@@ -116,7 +128,8 @@ void step_limit(int n_owned, int n_group, int n_material, int kind, real dt, rea
         for (int k = row_begin[e]; k < row_begin[e + 1]; k++) {
             struct limit_element b = limit_element_load(position, motion, row[k], kind);
             pvec3 D = nearest_images(p3_sub(b.x, a.x), period_x, period_y, period_z);
-            s = limit_add_pair(s, a, b, D, material_load(table + MATERIAL_WIDTH * (a.kind * n_material + b.kind)), dt, share);
+            s = limit_add_pair(s, a, b, D,
+                material_load(table + MATERIAL_WIDTH * (a.kind * n_material + b.kind)), dt, share);
         }
 #if WITH_WALLS
         for (int k = wall_begin[e]; k < wall_begin[e + 1]; k++) {
@@ -125,11 +138,13 @@ void step_limit(int n_owned, int n_group, int n_material, int kind, real dt, rea
             if (!keep[k]) continue;
 #endif
             s = limit_add_wall(s, a, WALL_PRIMITIVE(primitive, p), pose + w * POSE_WIDTH,
-                               material_load(table + MATERIAL_WIDTH * (a.kind * n_material + wall_material[w])), dt, share);
+                material_load(table + MATERIAL_WIDTH * (a.kind * n_material + wall_material[w])),
+                dt, share);
         }
 #endif
         real bound = limit_of_sums(s, least);
-        if (bound < LIMIT_NONE * LIMIT_ROUNDING && (who < 0 || limit_is_before(bound, gid[e], least, who))) {
+        if (bound < LIMIT_NONE * LIMIT_ROUNDING &&
+            (who < 0 || limit_is_before(bound, gid[e], least, who))) {
             least = bound;
             who = gid[e];
         }
@@ -139,7 +154,8 @@ void step_limit(int n_owned, int n_group, int n_material, int kind, real dt, rea
     barrier(CLK_LOCAL_MEM_FENCE);
     if (l == 0 && g < n_group) {
         for (int m = 1; m < GROUP; m++)
-            if (best_id[m] >= 0 && (who < 0 || limit_is_before(best_dt[m], best_id[m], least, who))) {
+            if (best_id[m] >= 0 &&
+                (who < 0 || limit_is_before(best_dt[m], best_id[m], least, who))) {
                 least = best_dt[m];
                 who = best_id[m];
             }

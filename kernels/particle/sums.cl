@@ -1,4 +1,5 @@
-/* Sums over elements and contacts for the account of energy and momentum, in integers (sums.h), so that their order does not matter.
+/* Sums over elements and contacts for the account of energy and momentum, in integers (sums.h), so
+ * that their order does not matter.
  *
  * lint: WITH_SUMS needs fp64 */
 #include "element.h"
@@ -7,13 +8,14 @@
 
 #if WITH_SUMS
 /* SUMS_ELEMENT sums over owned elements. origin: where gravity's potential is zero. */
-__kernel __attribute__((reqd_work_group_size(SUMS_GROUP, 1, 1)))
-void sums_elements(int n, __global const preal *position, __global const real *motion, double gravity_x, double gravity_y, double gravity_z,
-                   double origin_x, double origin_y, double origin_z, __global long *partial)
+__kernel __attribute__((reqd_work_group_size(SUMS_GROUP, 1, 1))) void sums_elements(int n,
+    __global const preal *position, __global const real *motion, double gravity_x, double gravity_y,
+    double gravity_z, double origin_x, double origin_y, double origin_z, __global long *partial)
 {
     __local long part[SUMS_ELEMENT * SUMS_WIDTH * SUMS_GROUP];
     struct sum sum[SUMS_ELEMENT];
-    double gravity[3] = {gravity_x, gravity_y, gravity_z}, origin[3] = {origin_x, origin_y, origin_z}, term[SUMS_ELEMENT];
+    double gravity[3] = {gravity_x, gravity_y, gravity_z},
+           origin[3] = {origin_x, origin_y, origin_z}, term[SUMS_ELEMENT];
     for (int k = 0; k < SUMS_ELEMENT; k++) sum[k] = sums_zero();
     for (int i = SUMS_FIRST; i < n; i += SUMS_STRIDE) {
         preal4 x = LOAD_POSITION(i);
@@ -41,11 +43,12 @@ void sums_elements(int n, __global const preal *position, __global const real *m
     sums_finish(part, SUMS_ELEMENT, partial);
 }
 
-/* LEDGER_WIDTH sums over contacts; all but the elastic energy begin anew afterwards. The n contacts are 0 <= p < n_first, and those from `second` on.
- * element [capacity]: contacts count where this is below n_lower. */
-__kernel __attribute__((reqd_work_group_size(SUMS_GROUP, 1, 1)))
-void sums_ledger(int n, int n_first, int second, int n_lower, int capacity, __global const int *element, __global double *ledger,
-                 __global long *partial)
+/* LEDGER_WIDTH sums over contacts; all but the elastic energy begin anew afterwards. The n contacts
+ * are 0 <= p < n_first, and those from `second` on. element [capacity]: contacts count where this
+ * is below n_lower. */
+__kernel __attribute__((reqd_work_group_size(SUMS_GROUP, 1, 1))) void sums_ledger(int n,
+    int n_first, int second, int n_lower, int capacity, __global const int *element,
+    __global double *ledger, __global long *partial)
 {
     __local long part[LEDGER_WIDTH * SUMS_WIDTH * SUMS_GROUP];
     struct sum sum[LEDGER_WIDTH];
@@ -76,10 +79,12 @@ LAW int sums_found(__global const long *sorted, int n, long key)
     return low;
 }
 
-/* Elastic energy in contacts of elements that are gone: gone [n_gone] their ids, ascending. element, partner: numbers into gid. The rest as above. */
-__kernel __attribute__((reqd_work_group_size(SUMS_GROUP, 1, 1)))
-void sums_gone(int n, int n_first, int second, int n_lower, int capacity, __global const int *element, __global const int *partner,
-               __global const long *gid, int n_gone, __global const long *gone, __global const double *ledger, __global long *partial)
+/* Elastic energy in contacts of elements that are gone: gone [n_gone] their ids, ascending.
+ * element, partner: numbers into gid. The rest as above. */
+__kernel __attribute__((reqd_work_group_size(SUMS_GROUP, 1, 1))) void sums_gone(int n, int n_first,
+    int second, int n_lower, int capacity, __global const int *element, __global const int *partner,
+    __global const long *gid, int n_gone, __global const long *gone, __global const double *ledger,
+    __global long *partial)
 {
     __local long part[SUMS_WIDTH * SUMS_GROUP];
     struct sum sum = sums_zero();
@@ -96,10 +101,11 @@ void sums_gone(int n, int n_first, int second, int n_lower, int capacity, __glob
     sums_finish(part, 1, partial);
 }
 
-/* Elastic energy in contacts with walls that are gone (gone_wall [walls] not 0), which holds none afterwards. */
-__kernel __attribute__((reqd_work_group_size(SUMS_GROUP, 1, 1)))
-void sums_gone_walls(int n, int capacity, __global const int *candidate, __global const int *wall_of, __global const int *gone_wall,
-                     __global double *ledger, __global long *partial)
+/* Elastic energy in contacts with walls that are gone (gone_wall [walls] not 0), which holds none
+ * afterwards. */
+__kernel __attribute__((reqd_work_group_size(SUMS_GROUP, 1, 1))) void sums_gone_walls(int n,
+    int capacity, __global const int *candidate, __global const int *wall_of,
+    __global const int *gone_wall, __global double *ledger, __global long *partial)
 {
     __local long part[SUMS_WIDTH * SUMS_GROUP];
     struct sum sum = sums_zero();

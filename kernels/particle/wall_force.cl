@@ -1,7 +1,9 @@
-/* Forces of walls on elements, by candidates (element, primitive), in the three phases of pair_force.cl.
+/* Forces of walls on elements, by candidates (element, primitive), in the three phases of
+ * pair_force.cl.
  *
- * The wall is body j of the contact: no radius, no lever, as heavy as it likes. Geometry is taken twice, at the end of the step and at its middle, as
- * the second-order friction of law_slider.h wants it; a moving wall is looked at from its own frame.
+ * The wall is body j of the contact: no radius, no lever, as heavy as it likes. Geometry is taken
+ * twice, at the end of the step and at its middle, as the second-order friction of law_slider.h
+ * wants it; a moving wall is looked at from its own frame.
  *
  * lint: WITH_TANGENTIAL_DAMPING requires WITH_TANGENTIAL
  * lint: WITH_TANGENTIAL requires WITH_SPIN
@@ -17,8 +19,8 @@
 /* Rows of local memory: real, then preal; results take the place of the former. */
 #define L_V 0
 #define L_W 3
-#define L_MASS (WITH_ROTATION ? 6 : 3)             /* 1/m */
-#define L_KIND (L_MASS + (WITH_SIZES ? 1 : 0))     /* row of the table */
+#define L_MASS (WITH_ROTATION ? 6 : 3)         /* 1/m */
+#define L_KIND (L_MASS + (WITH_SIZES ? 1 : 0)) /* row of the table */
 #define L_ROWS (L_KIND + (WITH_TABLE ? 1 : 0))
 #define ROWS (L_ROWS > 6 ? L_ROWS : 6)
 #define P_X 0
@@ -35,21 +37,24 @@
 #define TABLE_ROW 0
 #endif
 #if WITH_SIZES
-#define PARAMETERS contact_parameters_of(material_load(table + MATERIAL_WIDTH * TABLE_ROW), contact_pair_wall(LOC(L_MASS), radius), dt)
+#define PARAMETERS                                                                                 \
+    contact_parameters_of(material_load(table + MATERIAL_WIDTH * TABLE_ROW),                       \
+        contact_pair_wall(LOC(L_MASS), radius), dt)
 #elif WITH_TABLE
 #define PARAMETERS parameters_load(table + PARAMETER_WIDTH * TABLE_ROW)
 #else
 #define PARAMETERS PARAMETERS_OF_ARGUMENTS
 #endif
 #if WITH_MOVING
-#define GEOMETRY(primitive, x, v) wall_geometry_moving(primitive, x, v, pose + wall[l] * POSE_WIDTH, dt)
+#define GEOMETRY(primitive, x, v)                                                                  \
+    wall_geometry_moving(primitive, x, v, pose + wall[l] * POSE_WIDTH, dt)
 #else
 #define GEOMETRY(primitive, x, v) wall_geometry(primitive, x, v, dt)
 #endif
 
 /* One element and one primitive. */
-LAW void wall_load(int e, __global const preal *row, __global const preal *position, __global const real *motion, __local preal *place,
-                   __local real *loc, size_t l)
+LAW void wall_load(int e, __global const preal *row, __global const preal *position,
+    __global const real *motion, __local preal *place, __local real *loc, size_t l)
 {
     preal4 x = LOAD_POSITION(e), a = vload4(0, row), b = vload4(1, row), c = vload4(2, row);
     real4 v = LOAD_VELOCITY(e);
@@ -71,38 +76,40 @@ LAW void wall_load(int e, __global const preal *row, __global const preal *posit
 
 LAW struct wall_primitive wall_stored(__local const preal *place, size_t l)
 {
-    return wall_primitive(ROW3_LOAD(p3, place, P_PRIMITIVE, l), ROW3_LOAD(p3, place, P_PRIMITIVE + 3, l), ROW3_LOAD(p3, place, P_PRIMITIVE + 6, l),
-                          PLACE(P_PRIMITIVE + 9), PLACE(P_PRIMITIVE + 10), (int)PLACE(P_PRIMITIVE + 11));
+    return wall_primitive(ROW3_LOAD(p3, place, P_PRIMITIVE, l),
+        ROW3_LOAD(p3, place, P_PRIMITIVE + 3, l), ROW3_LOAD(p3, place, P_PRIMITIVE + 6, l),
+        PLACE(P_PRIMITIVE + 9), PLACE(P_PRIMITIVE + 10), (int)PLACE(P_PRIMITIVE + 11));
 }
 
 /* n_material: edge of the table, whose rows are (element's, wall's material). */
-__kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1)))
-void wall_force(int n_candidate, int capacity, __global const preal *position, __global const real *motion, __global const int *candidate,
-                __global const int *candidate_element, __global const preal *primitive,
+__kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void wall_force(int n_candidate,
+    int capacity, __global const preal *position, __global const real *motion,
+    __global const int *candidate, __global const int *candidate_element,
+    __global const preal *primitive,
 #if WITH_MOVING || WITH_TABLE
-                __global const int *wall_of,
+    __global const int *wall_of,
 #endif
 #if WITH_MOVING
-                __global const preal *restrict pose,
+    __global const preal *restrict pose,
 #endif
 #if WITH_TRIANGLE
-                __global const int *restrict keep,
+    __global const int *restrict keep,
 #endif
 #if WITH_HISTORY
-                __global int *restrict state, __global real *restrict history,
+    __global int *restrict state, __global real *restrict history,
 #endif
 #if WITH_ENERGY
-                __global double *restrict ledger,
+    __global double *restrict ledger,
 #endif
 #if WITH_TABLE
-                int n_material, __global const int *wall_material,
+    int n_material, __global const int *wall_material,
 #endif
 #if WITH_TABLE || WITH_SIZES
-                __global const real *restrict table,
+    __global const real *restrict table,
 #else
-                PARAMETER_ARGUMENTS,
+    PARAMETER_ARGUMENTS,
 #endif
-                __global real *restrict result, real dt)
+    __global real *restrict result, real dt)
 {
     __local real loc[ROWS * BATCH];
     __local preal place[P_ROWS * BATCH];
@@ -110,7 +117,8 @@ void wall_force(int n_candidate, int capacity, __global const preal *position, _
     __local int wall[BATCH];
 #endif
     size_t base = get_group_id(0) * BATCH, planes = (size_t)capacity;
-    size_t left = (size_t)n_candidate > base ? (size_t)n_candidate - base : 0, n = left < BATCH ? left : BATCH;
+    size_t left = (size_t)n_candidate > base ? (size_t)n_candidate - base : 0,
+           n = left < BATCH ? left : BATCH;
     FOR_BATCH (l, n) {
         int e = candidate_element[base + l], k = candidate[base + l];
         wall_load(e, primitive + WALL_PRIMITIVE_WIDTH * k, position, motion, place, loc, l);
@@ -136,13 +144,14 @@ void wall_force(int n_candidate, int capacity, __global const preal *position, _
         g.distance = counts ? g.distance : (preal)2 * (preal)radius;
         h.state = counts ? h.state : 0;
 #endif
-        struct contact_kinematics k =
-            contact_kinematics_wall(g.n, g.n_half, radius - (real)g.distance, radius - (real)g.distance_half, v, g.v, w, radius);
+        struct contact_kinematics k = contact_kinematics_wall(g.n, g.n_half,
+            radius - (real)g.distance, radius - (real)g.distance_half, v, g.v, w, radius);
         struct contact_result r = contact_law(k, p, dt, &h);
         HISTORY_STORE(h, base, planes, l);
         LEDGER_ADD(r, base, planes, l);
 #if WITH_WALL_WORK
-        ledger[(size_t)LEDGER_WORK * planes + base + l] += (double)wall_work(r.force, g.v, dt, history + base, planes, l);
+        ledger[(size_t)LEDGER_WORK * planes + base + l] +=
+            (double)wall_work(r.force, g.v, dt, history + base, planes, l);
 #endif
         vec3 torque = v3_fma(k.l_i, r.couple, r.moment);
         ROW3_STORE(loc, 0, l, r.force.x, r.force.y, r.force.z);

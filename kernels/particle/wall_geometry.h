@@ -1,4 +1,5 @@
-/* Where a sphere meets a wall at the end of the step and in its middle, and how fast the wall moves there. */
+/* Where a sphere meets a wall at the end of the step and in its middle, and how fast the wall moves
+ * there. */
 #ifndef DEMOCLES_WALL_GEOMETRY_H
 #define DEMOCLES_WALL_GEOMETRY_H
 
@@ -6,18 +7,21 @@
 #include "wall_pose.h"
 
 struct wall_geometry {
-    vec3 n, n_half;                /* unit vectors from the centre to the wall, at t^{n+1} and at the half step */
+    /* unit vectors from the centre to the wall, at t^{n+1} and at the half step */
+    vec3 n, n_half;
     preal distance, distance_half; /* [m] */
     vec3 v;                        /* velocity of the wall point [m/s] */
 };
 
-/* Closest point in the middle of the step, when the centre was at x - u dt/2. The distance to a plane is linear in the way: that is cheaper than a
- * second
- * look at it, and two equal chains of arithmetic would tempt LLVM into packing them, which keeps the loop over work-items scalar. */
-LAW struct wall_closest wall_closest_half(struct wall_primitive w, struct wall_closest now, pvec3 x, pvec3 way)
+/* Closest point in the middle of the step, when the centre was at x - u dt/2. The distance to a
+ * plane is linear in the way: that is cheaper than a second look at it, and two equal chains of
+ * arithmetic would tempt LLVM into packing them, which keeps the loop over work-items scalar. */
+LAW struct wall_closest wall_closest_half(
+    struct wall_primitive w, struct wall_closest now, pvec3 x, pvec3 way)
 {
     struct wall_closest half_way = now;
-    if (WITH_RECTANGLE || WITH_CYLINDER || WITH_TRIANGLE) half_way = wall_closest(w, p3_sub(x, way));
+    if (WITH_RECTANGLE || WITH_CYLINDER || WITH_TRIANGLE)
+        half_way = wall_closest(w, p3_sub(x, way));
     if (WITH_PLANE && w.kind == WALL_PLANE) {
         half_way.n = now.n;
         half_way.distance = now.distance + p3_dot(now.n, way);
@@ -25,7 +29,8 @@ LAW struct wall_closest wall_closest_half(struct wall_primitive w, struct wall_c
     return half_way;
 }
 
-LAW struct wall_geometry wall_geometry_of(struct wall_closest now, struct wall_closest half_way, vec3 v)
+LAW struct wall_geometry wall_geometry_of(
+    struct wall_closest now, struct wall_closest half_way, vec3 v)
 {
     struct wall_geometry g;
     g.n = v3_of_p3(now.n);
@@ -40,24 +45,32 @@ LAW struct wall_geometry wall_geometry_of(struct wall_closest now, struct wall_c
 LAW struct wall_geometry wall_geometry(struct wall_primitive w, pvec3 x, vec3 v, real dt)
 {
     struct wall_closest now = wall_closest(w, x);
-    return wall_geometry_of(now, wall_closest_half(w, now, x, p3_scale((preal)0.5 * (preal)dt, p3_of_v3(v))), v3(0, 0, 0));
+    return wall_geometry_of(now,
+        wall_closest_half(w, now, x, p3_scale((preal)0.5 * (preal)dt, p3_of_v3(v))), v3(0, 0, 0));
 }
 
 #ifdef __OPENCL_VERSION__
-/* A wall in motion, at its pose of t^{n+1}. Its velocity V, spin W and centre c belong to the half step: a point that is at y then goes with
- * V + W x (y - c), and is half a step's way further on at the end. So the place that the centre had in the middle is carried along with the wall,
- * looked at in the pose of now, and the normal turned back by half the wall's turn. The wall's velocity is that at the contact in the middle of the
+/* A wall in motion, at its pose of t^{n+1}. Its velocity V, spin W and centre c belong to the half
+ * step: a point that is at y then goes with V + W x (y - c), and is half a step's way further on at
+ * the end. So the place that the centre had in the middle is carried along with the wall, looked at
+ * in the pose of now, and the normal turned back by half the wall's turn. The wall's velocity is
+ * that at the contact in the middle of the
  * step: a wall that turns in itself has none along the normal. */
-LAW struct wall_geometry wall_geometry_moving(struct wall_primitive w, pvec3 x, vec3 v, __global const preal *pose, real dt)
+LAW struct wall_geometry wall_geometry_moving(
+    struct wall_primitive w, pvec3 x, vec3 v, __global const preal *pose, real dt)
 {
     struct wall_frame f = pose_frame(pose);
-    vec3 velocity = v3((real)pose[12], (real)pose[13], (real)pose[14]), spin = v3((real)pose[15], (real)pose[16], (real)pose[17]);
+    vec3 velocity = v3((real)pose[12], (real)pose[13], (real)pose[14]),
+         spin = v3((real)pose[15], (real)pose[16], (real)pose[17]);
     preal half_dt = (preal)0.5 * (preal)dt;
     pvec3 q = wall_to_reference(f, x);
-    vec3 arm = v3_of_p3(p3_fma(-half_dt, p3_of_v3(v), p3_sub(x, p3(pose[18], pose[19], pose[20])))); /* of the centre, in the middle */
-    vec3 rate = v3_sub(v, wall_velocity(velocity, spin, arm));                                       /* seen from the wall */
+    /* of the centre, in the middle */
+    vec3 arm = v3_of_p3(p3_fma(-half_dt, p3_of_v3(v), p3_sub(x, p3(pose[18], pose[19], pose[20]))));
+    /* seen from the wall */
+    vec3 rate = v3_sub(v, wall_velocity(velocity, spin, arm));
     struct wall_closest now = wall_closest(w, q);
-    struct wall_closest half_way = wall_closest_half(w, now, q, wall_turn_back(f, p3_scale(half_dt, p3_of_v3(rate))));
+    struct wall_closest half_way =
+        wall_closest_half(w, now, q, wall_turn_back(f, p3_scale(half_dt, p3_of_v3(rate))));
     now.n = wall_turn(f, now.n);
     half_way.n = wall_turn(f, half_way.n);
     struct wall_geometry g = wall_geometry_of(now, half_way, velocity);

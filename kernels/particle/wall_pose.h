@@ -1,4 +1,5 @@
-/* Where a wall is at a step, as the kernels see it: a row of POSE_WIDTH preal per wall, from walls_poses of src/shape/walls.h. */
+/* Where a wall is at a step, as the kernels see it: a row of POSE_WIDTH preal per wall, from
+ * walls_poses of src/shape/walls.h. */
 #ifndef DEMOCLES_WALL_POSE_H
 #define DEMOCLES_WALL_POSE_H
 

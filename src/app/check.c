@@ -15,15 +15,22 @@ static const double dense_pairs = 4.5;
 
 void check_head(const struct scene *scene)
 {
-    static const char *const precision[] = {
-        [PRECISION_DEFAULT] = "double", [PRECISION_DOUBLE] = "double", [PRECISION_MIXED] = "mixed", [PRECISION_SINGLE] = "single"};
+    static const char *const precision[] = {[PRECISION_DEFAULT] = "double",
+        [PRECISION_DOUBLE] = "double",
+        [PRECISION_MIXED] = "mixed",
+        [PRECISION_SINGLE] = "single"};
     const char *method = scene->method == METHOD_LATTICE ? "lattice" : "particles";
     printf("%s\n", scene->title && *scene->title ? scene->title : scene->name);
-    printf("    %s: %s in %s precision, hash %016lx\n", scene->path, method, precision[scene->precision], scene->hash);
-    printf("    gravity (%g, %g, %g) m/s2", scene->gravity[0], scene->gravity[1], scene->gravity[2]);
+    printf("    %s: %s in %s precision, hash %016lx\n", scene->path, method,
+        precision[scene->precision], scene->hash);
+    printf(
+        "    gravity (%g, %g, %g) m/s2", scene->gravity[0], scene->gravity[1], scene->gravity[2]);
     for (int a = 0; a < 3; a++)
-        if (scene->domain.periodic[a]) printf(", periodic in %c over %g m", "xyz"[a], scene -> domain.max[a] - scene->domain.min[a]);
-    printf("%s\n", scene->domain.remove_outside ? ", elements that leave the domain are removed" : "");
+        if (scene->domain.periodic[a])
+            printf(", periodic in %c over %g m", "xyz"[a],
+                scene -> domain.max[a] - scene->domain.min[a]);
+    printf(
+        "%s\n", scene->domain.remove_outside ? ", elements that leave the domain are removed" : "");
 }
 
 static void print_elements(const struct scene *scene, const struct elements_host *elements)
@@ -41,7 +48,8 @@ static void print_elements(const struct scene *scene, const struct elements_host
             largest = fmax(largest, r);
             mass += scene->material[group->material].density * (4.0 / 3.0) * M_PI * r * r * r;
         }
-        printf("    %s: %lld of %s, ", group->name, (long long)n, scene->material[group->material].name);
+        printf("    %s: %lld of %s, ", group->name, (long long)n,
+            scene->material[group->material].name);
         if (smallest < largest) printf("diameter %.4g to %.4g m, ", 2 * smallest, 2 * largest);
         else if (n > 0) printf("diameter %.4g m, ", 2 * smallest);
         printf("%.4g kg in all\n", mass);
@@ -65,30 +73,39 @@ static void print_walls(const struct scene *scene, const struct walls *walls)
         if (isfinite(wall->remove_at)) printf(", until %g s", wall->remove_at);
         printf("\n");
     }
-    if (walls->n_dropped > 0) printf("    %d triangles without area were left out\n", walls->n_dropped);
+    if (walls->n_dropped > 0)
+        printf("    %d triangles without area were left out\n", walls->n_dropped);
 }
 
 /* The same limit, step and number of steps as sim_create has them. */
-static void print_time(const struct scene *scene, const struct walls *walls, const struct elements_host *elements)
+static void print_time(
+    const struct scene *scene, const struct walls *walls, const struct elements_host *elements)
 {
     const struct scene_time *time = &scene->time;
     double speed = limit_speed(scene, walls, elements), limit = limit_dense(scene, elements, speed);
     double dt = time->step > 0 ? time->step : time->safety * limit;
     if (!(dt > 0 && isfinite(dt))) {
-        printf("\ntime: %g s; `step: auto` finds no limit in this scene: give a value\n", time->end);
+        printf(
+            "\ntime: %g s; `step: auto` finds no limit in this scene: give a value\n", time->end);
         return;
     }
     if (!(time->end / dt <= SCENE_STEPS_MOST)) {
-        printf("\ntime: %g s; `step: auto` takes %.3g s, too many steps: give a value\n", time->end, dt);
+        printf("\ntime: %g s; `step: auto` takes %.3g s, too many steps: give a value\n", time->end,
+            dt);
         return;
     }
-    printf("\ntime: %g s in %.0f steps of %.6g s, ", time->end, ceil(time->end / dt * (1 - 1e-12)), dt);
+    printf("\ntime: %g s in %.0f steps of %.6g s, ", time->end, ceil(time->end / dt * (1 - 1e-12)),
+        dt);
     if (time->step > 0) printf("as given\n");
     else printf("%g of the limit\n", time->safety);
-    printf("    limit %.4g s, for the densest packing of these elements and relative speeds of up to %.3g m/s\n", limit, speed);
+    printf(
+        "    limit %.4g s, for the densest packing of these elements and relative speeds of up to "
+        "%.3g m/s\n",
+        limit, speed);
     if (time->step > limit)
-        printf(
-            "    the step is over it: a run %s\n", time->allow_unstable ? "goes on, as asked for" : "stops where its contacts are as stiff as that");
+        printf("    the step is over it: a run %s\n",
+            time->allow_unstable ? "goes on, as asked for"
+                                 : "stops where its contacts are as stiff as that");
     struct scene_errors warnings = {0};
     limit_warnings(scene, elements, speed, dt, &warnings);
     for (int k = 0; k < warnings.n; k++) printf("    warning: %s\n", warnings.text[k]);
@@ -107,10 +124,12 @@ void check_output(const struct scene *scene)
     }
     if (n > 0) printf(", %s%.0f in all", every[0] > 0 && every[1] > 0 ? "up to " : "", n + 2);
     printf("\n");
-    for (int k = 0; k < scene->n_measure; k++) printf("    %s.csv every %g s\n", scene->measure[k].name, scene->measure[k].every);
+    for (int k = 0; k < scene->n_measure; k++)
+        printf("    %s.csv every %g s\n", scene->measure[k].name, scene->measure[k].every);
 }
 
-void check_features(const char *(*name)(int), bool (*value)(const void *, int), const void *features)
+void check_features(
+    const char *(*name)(int), bool (*value)(const void *, int), const void *features)
 {
     for (int in = 1; in >= 0; in--) {
         int column = printf("%sfeatures %s:", in ? "\n" : "", in ? "in" : "out");
@@ -128,7 +147,8 @@ static bool feature_value(const void *features, int k)
     return features_value(features, k);
 }
 
-static void print_all(const struct scene *scene, const struct walls *walls, const struct elements_host *elements)
+static void print_all(
+    const struct scene *scene, const struct walls *walls, const struct elements_host *elements)
 {
     struct features features = features_of(scene, walls, elements);
     check_head(scene);
@@ -139,8 +159,11 @@ static void print_all(const struct scene *scene, const struct walls *walls, cons
     check_output(scene);
     check_features(features_name, feature_value, &features);
     double per_element = check_element_bytes(&features), per_pair = check_pair_bytes(&features);
-    printf("\nmemory on the devices: %.0f bytes per element and %.0f per listed pair; %.1f MiB with %.2g pairs per element, as in a dense packing\n",
-        per_element, per_pair, (per_element + dense_pairs * per_pair) * (double)elements->n / 1048576, dense_pairs);
+    printf(
+        "\nmemory on the devices: %.0f bytes per element and %.0f per listed pair; %.1f MiB with "
+        "%.2g pairs per element, as in a dense packing\n",
+        per_element, per_pair,
+        (per_element + dense_pairs * per_pair) * (double)elements->n / 1048576, dense_pairs);
 }
 
 int check_scene(const struct comm *comm, const struct scene *scene, bool resolved)

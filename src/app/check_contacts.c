@@ -1,4 +1,5 @@
-/* Contact laws as a user reads them. m* and R* are those of two elements (or an element and a wall), see law_parameters.h. */
+/* Contact laws as a user reads them. m* and R* are those of two elements (or an element and a
+ * wall), see law_parameters.h. */
 #include "check_parts.h"
 
 #include <math.h>
@@ -37,12 +38,15 @@ static double mass(const struct scene *scene, int material, double radius)
 /* 1/E* = (1 - nu_a^2)/E_a + (1 - nu_b^2)/E_b [Pa] */
 static double young_star(const struct material *a, const struct material *b)
 {
-    return 1 / ((1 - a->poisson * a->poisson) / a->young + (1 - b->poisson * b->poisson) / b->young);
+    return 1 /
+           ((1 - a->poisson * a->poisson) / a->young + (1 - b->poisson * b->poisson) / b->young);
 }
 
-/* Contact time of the smallest elements. Linear: pi/(w sqrt(1 - z^2)), w^2 = k_n/m*, endless for z >= 1. Hertz: 2.94328 delta_max/v without
- * damping, delta_max = (5 m* v^2/(4 K))^(2/5), K = (4/3) E* sqrt(R*), for v = 1 m/s. */
-static void print_impact(const struct contact *c, const char *who, double m_star, double r_star, double e_star)
+/* Contact time of the smallest elements. Linear: pi/(w sqrt(1 - z^2)), w^2 = k_n/m*, endless for z
+ * >= 1. Hertz: 2.94328 delta_max/v without damping, delta_max = (5 m* v^2/(4 K))^(2/5), K = (4/3)
+ * E* sqrt(R*), for v = 1 m/s. */
+static void print_impact(
+    const struct contact *c, const char *who, double m_star, double r_star, double e_star)
 {
     double z = c->damping_ratio;
     printf("        %s: m* %.4g kg, contact time ", who, m_star);
@@ -61,23 +65,29 @@ static void print_normal(const struct contact *c, double e_star)
     if (c->normal_law == NORMAL_LINEAR) printf("        linear: k_n %.4g N/m", c->stiffness);
     else printf("        hertz: E* %.4g Pa", e_star);
     double e = restitution_of_damping(c->damping_ratio, c->attraction);
-    printf(", damping ratio %.4g (restitution %.4g%s)\n", c->damping_ratio, e, c->attraction ? "" : ", no attraction");
+    printf(", damping ratio %.4g (restitution %.4g%s)\n", c->damping_ratio, e,
+        c->attraction ? "" : ", no attraction");
 }
 
 static void print_rest(const struct contact *c)
 {
     if (c->has_tangential) {
-        if (c->normal_law == NORMAL_LINEAR) printf("        tangential: k_t %.4g N/m", c->stiffness_ratio * c->stiffness);
-        else if (c->stiffness_ratio >= 0) printf("        tangential: k_t/k_n %.4g", c->stiffness_ratio);
+        if (c->normal_law == NORMAL_LINEAR)
+            printf("        tangential: k_t %.4g N/m", c->stiffness_ratio * c->stiffness);
+        else if (c->stiffness_ratio >= 0)
+            printf("        tangential: k_t/k_n %.4g", c->stiffness_ratio);
         else printf("        tangential: k_t after Mindlin");
         printf(", damping ratio %.4g, friction %.4g\n", c->tangential_damping, c->friction);
     }
-    if (c->rolling == ROLLING_CDT) printf("        rolling: constant torque, friction %.4g\n", c->rolling_friction);
+    if (c->rolling == ROLLING_CDT)
+        printf("        rolling: constant torque, friction %.4g\n", c->rolling_friction);
     if (c->rolling == ROLLING_EPSD)
-        printf("        rolling: elastic-plastic, friction %.4g, damping ratio %.4g\n", c->rolling_friction, c->rolling_damping);
+        printf("        rolling: elastic-plastic, friction %.4g, damping ratio %.4g\n",
+            c->rolling_friction, c->rolling_damping);
     if (c->binding_force > 0) {
         printf("        binding: %.4g N", c->binding_force);
-        if (c->normal_law == NORMAL_LINEAR) printf(", holds up to a gap of %.4g m", c->binding_force / c->stiffness);
+        if (c->normal_law == NORMAL_LINEAR)
+            printf(", holds up to a gap of %.4g m", c->binding_force / c->stiffness);
         printf("\n");
     }
 }
@@ -91,8 +101,10 @@ void check_contacts(const struct scene *scene, const struct elements_host *eleme
         const struct material *material = scene->material;
         printf("    %s and %s\n", material[a].name, material[b].name);
         struct sizes of[2] = {sizes_of(elements, a), sizes_of(elements, b)};
-        double r[2] = {of[0].smallest, of[1].smallest}, m[2] = {mass(scene, a, r[0]), mass(scene, b, r[1])};
-        bool both = isfinite(r[0]) && isfinite(r[1]), wall[2] = {isfinite(r[0]) && is_wall(scene, b), isfinite(r[1]) && is_wall(scene, a)};
+        double r[2] = {of[0].smallest, of[1].smallest},
+               m[2] = {mass(scene, a, r[0]), mass(scene, b, r[1])};
+        bool both = isfinite(r[0]) && isfinite(r[1]),
+             wall[2] = {isfinite(r[0]) && is_wall(scene, b), isfinite(r[1]) && is_wall(scene, a)};
         bool has_force = c->normal_law == NORMAL_HERTZ || c->stiffness > 0;
         if (!has_force || (!both && !wall[0] && !wall[1])) {
             printf(has_force ? "        never meet\n" : "        no force\n");
@@ -101,7 +113,9 @@ void check_contacts(const struct scene *scene, const struct elements_host *eleme
         double e_star = c->normal_law == NORMAL_HERTZ ? young_star(&material[a], &material[b]) : 0;
         print_normal(c, e_star);
         print_rest(c);
-        if (both) print_impact(c, "smallest elements", m[0] * m[1] / (m[0] + m[1]), r[0] * r[1] / (r[0] + r[1]), e_star);
+        if (both)
+            print_impact(c, "smallest elements", m[0] * m[1] / (m[0] + m[1]),
+                r[0] * r[1] / (r[0] + r[1]), e_star);
         for (int side = 0; side < (a == b ? 1 : 2); side++)
             if (wall[side]) print_impact(c, "smallest element at a wall", m[side], r[side], e_star);
     }

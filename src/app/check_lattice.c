@@ -14,7 +14,8 @@ static int64_t count_links(const struct lattice_cells *cells, int body)
 {
     int64_t n = 0;
     for (int64_t i = 0; i < cells->n; i++)
-        for (int a = 0; a < 3 && (body < 0 || cells->body[i] == body); a++) n += cells->bits[i] >> (2 * a + 1) & 1;
+        for (int a = 0; a < 3 && (body < 0 || cells->body[i] == body); a++)
+            n += cells->bits[i] >> (2 * a + 1) & 1;
     return n;
 }
 
@@ -35,11 +36,14 @@ static void print_cells(const struct scene *scene, const struct lattice_cells *c
     for (int b = 0; b < scene->n_body; b++) {
         const struct body *body = &scene->body[b];
         const struct material *m = &scene->material[body->material];
-        double mass = link_constants_mass(lattice_frequency_material(m), body->cell) * (double)cells->n_of_body[b];
-        printf("    %s: %lld cells of %g m, %s, %.4g kg, %lld links within and upwards from it\n", body->name, (long long)cells->n_of_body[b],
-            body->cell, m->name, mass, (long long)count_links(cells, b));
+        double mass = link_constants_mass(lattice_frequency_material(m), body->cell) *
+                      (double)cells->n_of_body[b];
+        printf("    %s: %lld cells of %g m, %s, %.4g kg, %lld links within and upwards from it\n",
+            body->name, (long long)cells->n_of_body[b], body->cell, m->name, mass,
+            (long long)count_links(cells, b));
     }
-    if (cells->n_grid > 1) printf("    on %d grids: bodies on different ones are not joined\n", cells->n_grid);
+    if (cells->n_grid > 1)
+        printf("    on %d grids: bodies on different ones are not joined\n", cells->n_grid);
     printf("\nmaterials\n");
     for (int k = 0; k < scene->n_material; k++) print_material(&scene->material[k]);
 }
@@ -51,8 +55,9 @@ static void print_boundaries(const struct scene *scene, const struct lattice_cel
         n_held += (cells->bits[i] & CELL_FIXED) != 0;
         n_loaded += cells->row[i] > 0;
     }
-    printf("\nboundaries: %d; %lld cells are held or led, %lld are loaded or led, in %d different ways\n", scene->n_boundary, (long long)n_held,
-        (long long)n_loaded, cells->loads->n_row - 1);
+    printf("\nboundaries: %d; %lld cells are held or led, %lld are loaded or led, in %d different "
+           "ways\n",
+        scene->n_boundary, (long long)n_held, (long long)n_loaded, cells->loads->n_row - 1);
 }
 
 static bool may_break(const struct scene *scene)
@@ -66,20 +71,30 @@ static void print_time(const struct scene *scene, const struct lattice_cells *ce
 {
     static const char *const scheme[] = {"leapfrog", "rk4", "rkn4", "pefrl", "vefrl"};
     const struct scene_time *time = &scene->time;
-    double largest = lattice_frequency_largest(scene, cells), zeta = lattice_frequency_damping(scene, cells, largest);
+    double largest = lattice_frequency_largest(scene, cells),
+           zeta = lattice_frequency_damping(scene, cells, largest);
     double factor = lattice_limit_factor((enum lattice_scheme)time->scheme, zeta);
-    double free = lattice_limit_factor((enum lattice_scheme)time->scheme, 0), limit = factor / largest;
+    double free = lattice_limit_factor((enum lattice_scheme)time->scheme, 0),
+           limit = factor / largest;
     double dt = time->step > 0 ? time->step : time->safety * limit;
-    printf("\ntime: %g s in %.0f steps of %.6g s, ", time->end, ceil(time->end / dt * (1 - 1e-12)), dt);
+    printf("\ntime: %g s in %.0f steps of %.6g s, ", time->end, ceil(time->end / dt * (1 - 1e-12)),
+        dt);
     if (time->step > 0) printf("as given");
     else printf("%g of the limit", time->safety);
     printf(", by %s", scheme[time->scheme]);
-    if (scene->lattice.relax) printf(", or until %g of the largest force is left", scene->lattice.tolerance);
-    printf("\n    limit %.4g s, from the largest frequency, %.4g Hz\n", limit, largest / (2 * M_PI));
+    if (scene->lattice.relax)
+        printf(", or until %g of the largest force is left", scene->lattice.tolerance);
+    printf(
+        "\n    limit %.4g s, from the largest frequency, %.4g Hz\n", limit, largest / (2 * M_PI));
     if (may_break(scene)) printf("    links that break do not raise it\n");
-    if (zeta > 0) printf("    damping of links is %.4g of critical there%s", zeta, factor < free ? "" : " and costs no time step\n");
-    if (zeta > 0 && factor < free) printf(", and makes the step %.3g times smaller than without\n", free / factor);
-    if (dt > limit) printf("    the step is over it: a run %s\n", time->allow_unstable ? "goes on, as asked for" : "is refused");
+    if (zeta > 0)
+        printf("    damping of links is %.4g of critical there%s", zeta,
+            factor < free ? "" : " and costs no time step\n");
+    if (zeta > 0 && factor < free)
+        printf(", and makes the step %.3g times smaller than without\n", free / factor);
+    if (dt > limit)
+        printf("    the step is over it: a run %s\n",
+            time->allow_unstable ? "goes on, as asked for" : "is refused");
 }
 
 /* Bodies with one layer of cells along an axis have no Poisson effect in bending. */
@@ -93,8 +108,11 @@ static void print_thin(const struct scene *scene, const struct lattice_cells *ce
                 low = cells->at[i][a] < low ? cells->at[i][a] : low;
                 high = cells->at[i][a] > high ? cells->at[i][a] : high;
             }
-            if (low == high && (scene->material[scene->body[b].material].poisson < 0 || scene->material[scene->body[b].material].poisson > 0))
-                printf("    warning: '%s' is one cell thick in %c: no effect of Poisson's ratio in bending\n", scene->body[b].name, "xyz"[a]);
+            if (low == high && (scene->material[scene->body[b].material].poisson < 0 ||
+                                   scene->material[scene->body[b].material].poisson > 0))
+                printf("    warning: '%s' is one cell thick in %c: no effect of Poisson's ratio in "
+                       "bending\n",
+                    scene->body[b].name, "xyz"[a]);
         }
 }
 

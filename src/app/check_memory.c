@@ -1,9 +1,11 @@
-/* Device memory per element, from the widths that the kernels themselves use: their WITH_ switches are read here at run time. */
+/* Device memory per element, from the widths that the kernels themselves use: their WITH_ switches
+ * are read here at run time. */
 #include "check_parts.h"
 
 #include "particle/particles.h"
 
-/* Widths of contact_memory.h, for the features of one program. The laws of that header are not used. */
+/* Widths of contact_memory.h, for the features of one program. The laws of that header are not
+ * used. */
 #define WITH_LINEAR 1
 #define WITH_HERTZ 1
 #define WITH_NO_ATTRACTION 1
@@ -33,22 +35,29 @@
 
 enum { ROW_FOUND = 32 }; /* as in kernels/particle/rows.cl */
 
-/* Two generations of lists and of what contacts remember, one of results and losses. Rows list a pair twice, with index and gid. */
+/* Two generations of lists and of what contacts remember, one of results and losses. Rows list a
+ * pair twice, with index and gid. */
 double check_pair_bytes(const struct features *features)
 {
     size_t real_bytes = particles_real(features), whole = sizeof(cl_int); /* [byte] */
-    size_t list = 2 * (whole + sizeof(cl_long)) + 4 * whole;              /* rows; pair_i, pair_j, incidence of both */
+    /* rows; pair_i, pair_j, incidence of both */
+    size_t list = 2 * (whole + sizeof(cl_long)) + 4 * whole;
     if (WITH_HISTORY) list += whole + (size_t)(HISTORY_WIDTH)*real_bytes;
-    return (double)(2 * list + (size_t)(RESULT_WIDTH)*real_bytes + (WITH_ENERGY ? LEDGER_WIDTH * sizeof(cl_double) : 0));
+    return (double)(2 * list + (size_t)(RESULT_WIDTH)*real_bytes +
+                    (WITH_ENERGY ? LEDGER_WIDTH * sizeof(cl_double) : 0));
 }
 
-/* State now and spare, place and reach of the last lists, force and torque; indices of cells, lists and owners. */
+/* State now and spare, place and reach of the last lists, force and torque; indices of cells, lists
+ * and owners. */
 double check_element_bytes(const struct features *features)
 {
-    size_t real_bytes = particles_real(features), preal_bytes = particles_preal(features); /* [byte] */
-    size_t carried = 4 * preal_bytes + (features->spin ? 8 : 4) * real_bytes + sizeof(cl_long) + (features->orientation ? 4 * real_bytes : 0);
+    /* [byte] */
+    size_t real_bytes = particles_real(features), preal_bytes = particles_preal(features);
+    size_t carried = 4 * preal_bytes + (features->spin ? 8 : 4) * real_bytes + sizeof(cl_long) +
+                     (features->orientation ? 4 * real_bytes : 0);
     size_t own = 5 * preal_bytes + (features->spin ? 8 : 4) * real_bytes;
-    /* pairs, twice; interior, boundary; cells and their members; owners and ghosts; neighbours as found */
+    /* pairs, twice; interior, boundary; cells and their members; owners and ghosts; neighbours as
+     * found */
     size_t indices = (2 * 5 + 2 + 4 + 5 + ROW_FOUND) * sizeof(cl_int);
     return (double)(2 * carried + own + indices);
 }

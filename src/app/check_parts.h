@@ -8,16 +8,20 @@
 /* `check` of a scene of method lattice; as check_scene. */
 int check_lattice(const struct comm *comm, const struct scene *scene, bool resolved);
 
-/* Title, file, method, precision, gravity; what will be written; features in and out, by their names and values. */
+/* Title, file, method, precision, gravity; what will be written; features in and out, by their
+ * names and values. */
 void check_head(const struct scene *scene);
 void check_output(const struct scene *scene);
-void check_features(const char *(*name)(int), bool (*value)(const void *features, int), const void *features);
+void check_features(
+    const char *(*name)(int), bool (*value)(const void *features, int), const void *features);
 
-/* The contact laws of all pairs of materials that can meet, with what follows from the sizes of the elements. */
+/* The contact laws of all pairs of materials that can meet, with what follows from the sizes of the
+ * elements. */
 void check_contacts(const struct scene *scene, const struct elements_host *elements);
 
-/* Device memory [byte] per element without pairs, and per listed pair; for one rank, so without ghosts, and without walls. Arrays that have grown
- * hold up to a quarter more, and never shrink: what counts is the largest number of pairs so far. */
+/* Device memory [byte] per element without pairs, and per listed pair; for one rank, so without
+ * ghosts, and without walls. Arrays that have grown hold up to a quarter more, and never shrink:
+ * what counts is the largest number of pairs so far. */
 double check_element_bytes(const struct features *features);
 double check_pair_bytes(const struct features *features);
 

@@ -19,7 +19,8 @@ static int run(struct comm *comm, struct options *options)
     bool goes_on = options->command == OPTIONS_RESUME;
     struct resume *from = goes_on ? resume_open(comm, log, options->operand) : NULL;
     struct scene *scene =
-        goes_on ? resume_scene(comm, from, options->set, options->n_set) : scene_report_read(comm, options->operand, options->set, options->n_set);
+        goes_on ? resume_scene(comm, from, options->set, options->n_set)
+                : scene_report_read(comm, options->operand, options->set, options->n_set);
     const char *given = goes_on ? options->operand : options->run.dir;
     char *dir = given ? fail_strdup(given) : fail_format("out/%s", scene->name);
     options->run.dir = dir;
@@ -66,7 +67,8 @@ static int print(const struct comm *comm, const struct options *options)
     if (comm->rank == 0) {
         if (options->version) printf("democles %s (%s)\n", DEMOCLES_VERSION, DEMOCLES_GIT);
         else if (options->help) options_help(options->command, stdout);
-        else if (options->command == OPTIONS_DEVICES) code = list_devices(options->n_rank > 0 ? options->n_rank : comm->n_node_rank);
+        else if (options->command == OPTIONS_DEVICES)
+            code = list_devices(options->n_rank > 0 ? options->n_rank : comm->n_node_rank);
         else if (!scene_explain(options->operand)) code = EXIT_USAGE;
     }
     comm_bcast(comm, &code, sizeof code, 0);
@@ -83,7 +85,8 @@ int main(int argc, char **argv)
     int code;
     bool runs = options.command == OPTIONS_RUN || options.command == OPTIONS_RESUME;
     if (!runs) signals_pass();
-    if (options.help || options.version || (!runs && options.command != OPTIONS_CHECK)) code = print(comm, &options);
+    if (options.help || options.version || (!runs && options.command != OPTIONS_CHECK))
+        code = print(comm, &options);
     else code = runs ? run(comm, &options) : check(comm, &options);
 
     int32_t is_lost = fflush(stdout) || ferror(stdout);

@@ -15,32 +15,67 @@ static const struct command {
     const char *name, *operand, *text;
     bool needed; /* the operand */
 } COMMAND[] = {
-    [OPTIONS_RUN] = {"run", "SCENE", "run a scene; `mpirun -n N democles run SCENE` for N ranks", true},
-    [OPTIONS_RESUME] = {"resume", "DIR", "go on from the newest whole frame in DIR, on any number of ranks, with the same bits", true},
-    [OPTIONS_CHECK] = {"check", "SCENE", "read and validate a scene, and print what would run", true},
-    [OPTIONS_DEVICES] = {"devices", NULL, "OpenCL devices, and which one each rank would take", false},
-    [OPTIONS_EXPLAIN] = {"explain", "KEY", "the scene language: every key, or those of KEY (contacts.normal)", false},
+    [OPTIONS_RUN] = {"run", "SCENE", "run a scene; `mpirun -n N democles run SCENE` for N ranks",
+        true},
+    [OPTIONS_RESUME] = {"resume", "DIR",
+        "go on from the newest whole frame in DIR, on any number of ranks, with the same bits",
+        true},
+    [OPTIONS_CHECK] = {"check", "SCENE", "read and validate a scene, and print what would run",
+        true},
+    [OPTIONS_DEVICES] = {"devices", NULL, "OpenCL devices, and which one each rank would take",
+        false},
+    [OPTIONS_EXPLAIN] = {"explain", "KEY",
+        "the scene language: every key, or those of KEY (contacts.normal)", false},
 };
 
-enum { DIRECTORY, SET, FORCE, DEVICE, PRECISION, STEPS, MAX_TIME, QUIET, PROFILE, TRACE, TRACE_FROM, TRACE_LENGTH, RESOLVED, RANKS, N_OPTION };
-enum { RUN = 1 << OPTIONS_RUN, RESUME = 1 << OPTIONS_RESUME, CHECK = 1 << OPTIONS_CHECK, DEVICES = 1 << OPTIONS_DEVICES };
+enum {
+    DIRECTORY,
+    SET,
+    FORCE,
+    DEVICE,
+    PRECISION,
+    STEPS,
+    MAX_TIME,
+    QUIET,
+    PROFILE,
+    TRACE,
+    TRACE_FROM,
+    TRACE_LENGTH,
+    RESOLVED,
+    RANKS,
+    N_OPTION
+};
+enum {
+    RUN = 1 << OPTIONS_RUN,
+    RESUME = 1 << OPTIONS_RESUME,
+    CHECK = 1 << OPTIONS_CHECK,
+    DEVICES = 1 << OPTIONS_DEVICES
+};
 
 static const struct option {
     const char *name, *value, *text; /* value: NULL for a switch */
     int commands;                    /* that know it, bits */
 } OPTION[N_OPTION] = {
     [DIRECTORY] = {"-o", "DIR", "folder of the results [out/<name of the scene>]", RUN},
-    [SET] = {"--set", "KEY=VALUE", "change a key of the scene, as time.end=1s; may be given again", RUN | RESUME | CHECK},
+    [SET] = {"--set", "KEY=VALUE", "change a key of the scene, as time.end=1s; may be given again",
+        RUN | RESUME | CHECK},
     [FORCE] = {"--force", NULL, "replace earlier results in DIR", RUN},
-    [DEVICE] = {"--device", "PLATFORM:DEVICE", "indices or parts of names, as `democles devices` lists them; or a part of one name [the best]",
+    [DEVICE] = {"--device", "PLATFORM:DEVICE",
+        "indices or parts of names, as `democles devices` lists them; or a part of one name [the "
+        "best]",
         RUN | RESUME},
     [PRECISION] = {"--precision", "P", "double, mixed or single [the scene's]", RUN | CHECK},
     [STEPS] = {"--steps", "N", "end after step N, counted from the scene's start", RUN | RESUME},
-    [MAX_TIME] = {"--max-time", "1h30m", "stop after this time on the clock, with exit code 75", RUN | RESUME},
-    [QUIET] = {"--quiet", NULL, "nothing to the screen but errors and warnings", RUN | RESUME},
-    [PROFILE] = {"--profile", NULL, "device time of each kernel into run.json, at a small price; balance over time into DIR/run.balance.csv",
+    [MAX_TIME] = {"--max-time", "1h30m", "stop after this time on the clock, with exit code 75",
         RUN | RESUME},
-    [TRACE] = {"--trace", NULL, "a timeline of some steps into DIR/trace.json, for Perfetto or chrome://tracing", RUN | RESUME},
+    [QUIET] = {"--quiet", NULL, "nothing to the screen but errors and warnings", RUN | RESUME},
+    [PROFILE] = {"--profile", NULL,
+        "device time of each kernel into run.json, at a small price; balance over time into "
+        "DIR/run.balance.csv",
+        RUN | RESUME},
+    [TRACE] = {"--trace", NULL,
+        "a timeline of some steps into DIR/trace.json, for Perfetto or chrome://tracing",
+        RUN | RESUME},
     [TRACE_FROM] = {"--trace-from", "N", "that from step N on [about 100]", RUN | RESUME},
     [TRACE_LENGTH] = {"--trace-steps", "N", "that of N steps [20]", RUN | RESUME},
     [RESOLVED] = {"--resolved", NULL, "print only the scene, with all defaults", CHECK},
@@ -68,7 +103,9 @@ static void parse_command(struct options *o, const char *word)
     else if (strcmp(word, "--version") == 0) o->version = true;
     else {
         char *more = advice(word, name, OPTIONS_NONE, OPTIONS_NONE);
-        o->error = fail_format("%s '%s'%s", word[0] == '-' ? "a command has to come first, not" : "there is no command", word, more);
+        o->error = fail_format("%s '%s'%s",
+            word[0] == '-' ? "a command has to come first, not" : "there is no command", word,
+            more);
         free(more);
     }
 }
@@ -80,19 +117,22 @@ static void report_unknown_option(struct options *o, const char *word)
     for (int k = 0; k < N_OPTION; k++)
         if (OPTION[k].commands & 1 << o->command) name[n++] = OPTION[k].name;
     char *more = advice(word, name, n, o->command);
-    o->error = fail_format("`democles %s` has no option '%s'%s", COMMAND[o->command].name, word, more);
+    o->error =
+        fail_format("`democles %s` has no option '%s'%s", COMMAND[o->command].name, word, more);
     free(more);
 }
 
 /* A whole number from `low` on; otherwise the error is set. */
-static int64_t whole_number(struct options *o, int option, const char *value, int64_t low, int64_t high)
+static int64_t whole_number(
+    struct options *o, int option, const char *value, int64_t low, int64_t high)
 {
     char *end;
     errno = 0;
     long long n = strtoll(value, &end, 10);
     bool is_number = value[strspn(value, "+0123456789")] == '\0' && end != value && *end == '\0';
     if (is_number && errno == 0 && n >= low && n <= high) return n;
-    o->error = fail_format("%s '%s': expected a whole number, at least %lld", OPTION[option].name, value, (long long)low);
+    o->error = fail_format("%s '%s': expected a whole number, at least %lld", OPTION[option].name,
+        value, (long long)low);
     return low;
 }
 
@@ -123,7 +163,9 @@ static void store(struct options *o, int option, const char *value)
     case PRECISION: store_precision(o, value); break;
     case STEPS: o->run.n_step = whole_number(o, option, value, 0, INT64_MAX); break;
     case MAX_TIME:
-        if (!duration_parse(value, &o->run.max_time)) o->error = fail_format("--max-time '%s': expected a time like 1h30m, 90s or 3600", value);
+        if (!duration_parse(value, &o->run.max_time))
+            o->error =
+                fail_format("--max-time '%s': expected a time like 1h30m, 90s or 3600", value);
         break;
     case QUIET: o->run.quiet = true; break;
     case PROFILE: o->run.profile = true; break;
@@ -141,7 +183,8 @@ static void store(struct options *o, int option, const char *value)
     }
 }
 
-/* Reads the option argv[k], with its value there (--steps=5) or behind it; returns the index of the next argument. */
+/* Reads the option argv[k], with its value there (--steps=5) or behind it; returns the index of the
+ * next argument. */
 static int parse_option(struct options *o, int argc, char **argv, int k)
 {
     const char *word = argv[k++], *equals = strncmp(word, "--", 2) == 0 ? strchr(word, '=') : NULL;
@@ -151,7 +194,9 @@ static int parse_option(struct options *o, int argc, char **argv, int k)
         return k;
     }
     int option = 0;
-    while (option < N_OPTION && (strncmp(word, OPTION[option].name, length) != 0 || OPTION[option].name[length] != '\0')) option++;
+    while (option < N_OPTION &&
+           (strncmp(word, OPTION[option].name, length) != 0 || OPTION[option].name[length] != '\0'))
+        option++;
     if (option == N_OPTION || !(OPTION[option].commands & 1 << o->command)) {
         char *name = fail_format("%.*s", (int)length, word);
         report_unknown_option(o, name);
@@ -159,9 +204,12 @@ static int parse_option(struct options *o, int argc, char **argv, int k)
         return k;
     }
     const char *value = equals ? equals + 1 : NULL;
-    if (OPTION[option].value && !value && k < argc && strncmp(argv[k], "--", 2) != 0) value = argv[k++];
-    if (OPTION[option].value && (!value || !*value)) o->error = fail_format("%s needs a value: %s", OPTION[option].name, OPTION[option].value);
-    else if (!OPTION[option].value && value) o->error = fail_format("%s takes no value", OPTION[option].name);
+    if (OPTION[option].value && !value && k < argc && strncmp(argv[k], "--", 2) != 0)
+        value = argv[k++];
+    if (OPTION[option].value && (!value || !*value))
+        o->error = fail_format("%s needs a value: %s", OPTION[option].name, OPTION[option].value);
+    else if (!OPTION[option].value && value)
+        o->error = fail_format("%s takes no value", OPTION[option].name);
     else store(o, option, value);
     return k;
 }
@@ -170,14 +218,20 @@ static void parse_operand(struct options *o, const char *word)
 {
     const struct command *c = &COMMAND[o->command];
     if (!c->operand) o->error = fail_format("`democles %s` takes no argument '%s'", c->name, word);
-    else if (o->operand) o->error = fail_format("`democles %s` takes one %s, not both '%s' and '%s'", c->name, c->operand, o->operand, word);
+    else if (o->operand)
+        o->error = fail_format("`democles %s` takes one %s, not both '%s' and '%s'", c->name,
+            c->operand, o->operand, word);
     else o->operand = word;
 }
 
 struct options options_parse(int argc, char **argv)
 {
     struct options o = {.command = OPTIONS_NONE,
-        .run = {.precision = PRECISION_DEFAULT, .n_step = -1, .max_time = HUGE_VAL, .trace_from = -1, .trace_steps = TRACE_STEPS}};
+        .run = {.precision = PRECISION_DEFAULT,
+            .n_step = -1,
+            .max_time = HUGE_VAL,
+            .trace_from = -1,
+            .trace_steps = TRACE_STEPS}};
     o.set = fail_alloc((size_t)(argc + 1) * sizeof *o.set);
     if (argc < 2) o.error = fail_strdup("a command is missing; see `democles --help`");
     else parse_command(&o, argv[1]);
@@ -186,7 +240,8 @@ struct options options_parse(int argc, char **argv)
         else parse_operand(&o, argv[k++]);
     }
     if (!o.error && !o.help && o.command != OPTIONS_NONE && COMMAND[o.command].needed && !o.operand)
-        o.error = fail_format("`democles %s` needs a %s", COMMAND[o.command].name, COMMAND[o.command].operand);
+        o.error = fail_format(
+            "`democles %s` needs a %s", COMMAND[o.command].name, COMMAND[o.command].operand);
     if (o.precision) o.set[o.n_set++] = o.precision;
     return o;
 }
@@ -201,9 +256,10 @@ void options_free(struct options *o)
 static void help_command(enum options_command command, FILE *file)
 {
     const struct command *c = &COMMAND[command];
-    const char *before = !c->operand || c->needed ? "" : "[", *after = !c->operand || c->needed ? "" : "]";
-    fprintf(
-        file, "usage: democles %s%s%s%s%s [OPTION]...\n%s\n\n", c->name, c->operand ? " " : "", before, c->operand ? c->operand : "", after, c->text);
+    const char *before = !c->operand || c->needed ? "" : "[",
+               *after = !c->operand || c->needed ? "" : "]";
+    fprintf(file, "usage: democles %s%s%s%s%s [OPTION]...\n%s\n\n", c->name, c->operand ? " " : "",
+        before, c->operand ? c->operand : "", after, c->text);
     for (int k = 0; k < N_OPTION; k++) {
         if (!(OPTION[k].commands & 1 << command)) continue;
         char *left = fail_format("%s %s", OPTION[k].name, OPTION[k].value ? OPTION[k].value : "");
@@ -219,15 +275,18 @@ void options_help(enum options_command command, FILE *file)
         help_command(command, file);
         return;
     }
-    fprintf(file, "democles %s: discrete elements on OpenCL devices, distributed with MPI\n\n", DEMOCLES_VERSION);
+    fprintf(file, "democles %s: discrete elements on OpenCL devices, distributed with MPI\n\n",
+        DEMOCLES_VERSION);
     for (int c = 0; c < OPTIONS_NONE; c++) {
         const struct command *row = &COMMAND[c];
-        char *left = fail_format(row->needed || !row->operand ? "%s %s" : "%s [%s]", row->name, row->operand ? row->operand : "");
+        char *left = fail_format(row->needed || !row->operand ? "%s %s" : "%s [%s]", row->name,
+            row->operand ? row->operand : "");
         fprintf(file, "    democles %-16s  %s\n", left, row->text);
         free(left);
     }
     fprintf(file, "    democles %-16s  %s\n", "COMMAND --help", "options of a command");
     fprintf(file, "    democles %-16s  %s\n", "--version", "version and commit");
-    fprintf(
-        file, "\nexit codes: 0 done, 2 usage, 3 scene or input file wrong, 4 no usable device, 5 numerics, 6 input/output, 75 stopped on request\n");
+    fprintf(file,
+        "\nexit codes: 0 done, 2 usage, 3 scene or input file wrong, 4 no usable device, 5 "
+        "numerics, 6 input/output, 75 stopped on request\n");
 }

@@ -20,7 +20,8 @@ bool duration_parse(const char *text, double *seconds)
         size_t n = strspn(text, "0123456789.");
         char *end;
         double value = strtod(text, &end);
-        if (n == 0 || end != text + n) return false; /* also where strtod would take a sign, an exponent, hex, inf or nan */
+        /* also where strtod would take a sign, an exponent, hex, inf or nan */
+        if (n == 0 || end != text + n) return false;
         text += n;
         if (!*text) {
             if (!first) return false; /* as in 1h30: is that minutes? */

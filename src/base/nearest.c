@@ -31,7 +31,8 @@ int nearest_distance(const char *a, const char *b)
         for (size_t j = 1; j <= nb; j++) {
             int cost = low(a[i - 1]) != low(b[j - 1]);
             now[j] = smallest(smallest(last[j] + 1, now[j - 1] + 1), last[j - 1] + cost);
-            if (i > 1 && j > 1 && low(a[i - 1]) == low(b[j - 2]) && low(a[i - 2]) == low(b[j - 1])) now[j] = smallest(now[j], before[j - 2] + 1);
+            if (i > 1 && j > 1 && low(a[i - 1]) == low(b[j - 2]) && low(a[i - 2]) == low(b[j - 1]))
+                now[j] = smallest(now[j], before[j - 2] + 1);
         }
     }
     int distance = now[nb];
@@ -47,7 +48,8 @@ const char *nearest_name(const char *name, const char *const *names, int n)
         size_t longer = strlen(name) > strlen(names[k]) ? strlen(name) : strlen(names[k]);
         int allowed = longer < 6 ? 1 + (longer > 3) : (int)(longer / 3);
         int distance = nearest_distance(name, names[k]);
-        if (distance > allowed || (size_t)distance >= longer) continue; /* nothing in common is not near */
+        /* nothing in common is not near */
+        if (distance > allowed || (size_t)distance >= longer) continue;
         if (best && distance >= best_distance) continue;
         best = names[k];
         best_distance = distance;

@@ -21,7 +21,8 @@ void signals_keep(void)
     action.sa_flags = SA_RESTART;
     sigemptyset(&action.sa_mask);
     for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++)
-        if (sigaction(wanted[i], &action, NULL) != 0) fail_stop(EXIT_IO, "sigaction(%d) fails", wanted[i]);
+        if (sigaction(wanted[i], &action, NULL) != 0)
+            fail_stop(EXIT_IO, "sigaction(%d) fails", wanted[i]);
 }
 
 static void mask_term(int how)

@@ -1,17 +1,21 @@
-/* Wall clocks by name: where a run's time goes on this rank. A begin and end cost one read of the clock each. */
+/* Wall clocks by name: where a run's time goes on this rank. A begin and end cost one read of the
+ * clock each. */
 #ifndef DEMOCLES_TIMER_H
 #define DEMOCLES_TIMER_H
 
 #include <stdint.h>
 
 enum timer_name {
-    TIMER_SETUP,    /* from the start to the first step */
-    TIMER_LOOP,     /* all steps, output left out */
-    TIMER_COMPUTE,  /* what is left of the loop: enqueueing kernels and waiting for the own device */
+    TIMER_SETUP, /* from the start to the first step */
+    TIMER_LOOP,  /* all steps, output left out */
+    /* what is left of the loop: enqueueing kernels and waiting for the own device */
+    TIMER_COMPUTE,
     TIMER_EXCHANGE, /* halo: posting, messages, arrival; votes; not the kernels that run under it */
-    TIMER_WAIT,     /* of that, waiting for other ranks, also while the device has work left: at most so much is lost */
-    TIMER_REGROUP,  /* owners, migration, lists */
-    TIMER_OUTPUT,   /* frames, measures */
+    /* of that, waiting for other ranks, also while the device has work left: at most so much is
+     * lost */
+    TIMER_WAIT,
+    TIMER_REGROUP, /* owners, migration, lists */
+    TIMER_OUTPUT,  /* frames, measures */
     TIMER_N
 };
 

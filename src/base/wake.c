@@ -8,7 +8,8 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-/* As the kernel wants it, see sched_setattr(2). For the ordinary policy the slice stands where others have their run time. */
+/* As the kernel wants it, see sched_setattr(2). For the ordinary policy the slice stands where
+ * others have their run time. */
 struct attributes {
     uint32_t size, policy;
     uint64_t flags;
@@ -19,7 +20,10 @@ struct attributes {
 
 void wake_at_once(void)
 {
-    struct attributes attributes = {.size = sizeof attributes, .policy = SCHED_OTHER, .nice = getpriority(PRIO_PROCESS, 0), .slice = 100000};
+    struct attributes attributes = {.size = sizeof attributes,
+        .policy = SCHED_OTHER,
+        .nice = getpriority(PRIO_PROCESS, 0),
+        .slice = 100000};
     if (sched_getscheduler(0) == SCHED_OTHER) syscall(SYS_sched_setattr, 0, &attributes, 0);
     prctl(PR_SET_TIMERSLACK, 1000UL /* ns */, 0UL, 0UL, 0UL);
 }

@@ -9,15 +9,18 @@
 #include "device_find.h"
 #include "comm/fail.h"
 
-/* pocl makes one worker per hardware thread of the node in every rank and ignores what mpirun bound: give each rank its share of the cores that
- * the node's ranks may use together, at most those it may use itself, at least one. Before the first OpenCL call, because the workers start there.
- * The name depends on pocl's version: up to 3, 4 to 6, from 7. A setting of the user's own wins. */
+/* pocl makes one worker per hardware thread of the node in every rank and ignores what mpirun
+ * bound: give each rank its share of the cores that the node's ranks may use together, at most
+ * those it may use itself, at least one. Before the first OpenCL call, because the workers start
+ * there. The name depends on pocl's version: up to 3, 4 to 6, from 7. A setting of the user's own
+ * wins. */
 static void limit_pocl_threads(const struct comm *comm)
 {
     cpu_set_t own, all;
     char text[16];
     CPU_ZERO(&own);
-    if (sched_getaffinity(0, sizeof own, &own) != 0) CPU_ZERO(&own); /* more than 1024 CPUs: unknown */
+    /* more than 1024 CPUs: unknown */
+    if (sched_getaffinity(0, sizeof own, &own) != 0) CPU_ZERO(&own);
     all = own;
     comm_node_or(comm, &all, sizeof all);
     int n = CPU_COUNT(&all) / comm->n_node_rank;
@@ -30,23 +33,30 @@ static void limit_pocl_threads(const struct comm *comm)
 }
 
 /* What was looked for, what there is, and how to go on. */
-static char *no_device(const struct device_entry *entry, int n_entry, cl_int code, const char *choice)
+static char *no_device(
+    const struct device_entry *entry, int n_entry, cl_int code, const char *choice)
 {
     char *text = NULL;
     size_t bytes = 0;
     FILE *file = open_memstream(&text, &bytes);
     const char *vendors = getenv("OCL_ICD_VENDORS");
     if (!file) fail_stop(EXIT_IO, "out of memory");
-    if (choice) fprintf(file, "--device %s: no usable OpenCL device matches (PLATFORM:DEVICE, each an index or part of a name). ", choice);
+    if (choice)
+        fprintf(file,
+            "--device %s: no usable OpenCL device matches (PLATFORM:DEVICE, each an index or part "
+            "of a name). ",
+            choice);
     if (n_entry > 0) {
         fprintf(file, "%s", choice ? "There are:\n" : "no usable OpenCL device, of these:\n");
         for (int i = 0; i < n_entry; i++) device_print_short(&entry[i], file);
         fprintf(file, "choose one of them with --device; `democles devices` tells more");
     } else {
-        fprintf(file, "no OpenCL device was found: drivers are looked for in %s (%s). ", vendors ? vendors : "/etc/OpenCL/vendors",
+        fprintf(file, "no OpenCL device was found: drivers are looked for in %s (%s). ",
+            vendors ? vendors : "/etc/OpenCL/vendors",
             code == CL_SUCCESS ? "no driver there has a device" : device_error_name(code));
-        fprintf(
-            file, "Install the driver of your GPU, or for the CPU: apt-get install pocl-opencl-icd%s", vendors ? "; or unset OCL_ICD_VENDORS" : "");
+        fprintf(file,
+            "Install the driver of your GPU, or for the CPU: apt-get install pocl-opencl-icd%s",
+            vendors ? "; or unset OCL_ICD_VENDORS" : "");
     }
     fclose(file);
     return text;
@@ -58,8 +68,10 @@ static char *no_fp64(const struct device *dev, const struct device_entry *entry,
     size_t bytes = 0;
     FILE *file = open_memstream(&text, &bytes);
     if (!file) fail_stop(EXIT_IO, "out of memory");
-    fprintf(file, "precision double or mixed needs fp64, which this device does not have: %s: %s. Run with --precision single", dev->platform_name,
-        dev->name);
+    fprintf(file,
+        "precision double or mixed needs fp64, which this device does not have: %s: %s. Run with "
+        "--precision single",
+        dev->platform_name, dev->name);
     int n = 0;
     for (int i = 0; i < n_entry; i++)
         if (entry[i].info.fp64 && !entry[i].unusable) {
@@ -95,7 +107,8 @@ static void stop_together(const struct comm *comm, char *error)
 /* Context and queues of a device that is chosen. */
 static void open_queues(struct device *dev)
 {
-    cl_context_properties properties[] = {CL_CONTEXT_PLATFORM, (cl_context_properties)dev->platform, 0};
+    cl_context_properties properties[] = {
+        CL_CONTEXT_PLATFORM, (cl_context_properties)dev->platform, 0};
     cl_command_queue_properties queue = dev->profile ? CL_QUEUE_PROFILING_ENABLE : 0;
     cl_int code;
     dev->context = clCreateContext(properties, 1, &dev->id, NULL, NULL, &code);
@@ -106,7 +119,8 @@ static void open_queues(struct device *dev)
     check_cl_as(code, "clCreateCommandQueue");
 }
 
-struct device *device_open(const struct comm *comm, const char *choice, bool need_fp64, bool profile)
+struct device *device_open(
+    const struct comm *comm, const char *choice, bool need_fp64, bool profile)
 {
     struct device_entry *entry;
     cl_int code;
@@ -165,7 +179,8 @@ void device_finish(struct device *dev)
 bool device_event_done(cl_event event)
 {
     cl_int status;
-    check_cl(clGetEventInfo(event, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof status, &status, NULL));
+    check_cl(
+        clGetEventInfo(event, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof status, &status, NULL));
     if (status < 0) check_cl_as(status, "a command on the device");
     return status == CL_COMPLETE;
 }
@@ -174,14 +189,19 @@ static void print_device(const struct device_entry *e, FILE *file)
 {
     const struct device *d = &e->info;
     fprintf(file, "%d:%d  %s\n", e->platform_index, e->device_index, d->name);
-    fprintf(file, "     kind            %s%s%s, %s\n", device_kind(d), e->unusable ? ", UNUSABLE: " : "", e->unusable ? e->unusable : "", d->vendor);
+    fprintf(file, "     kind            %s%s%s, %s\n", device_kind(d),
+        e->unusable ? ", UNUSABLE: " : "", e->unusable ? e->unusable : "", d->vendor);
     fprintf(file, "     driver          %s; %s; kernels: %s\n", d->driver, d->version, d->opencl_c);
     if (e->bus[0]) fprintf(file, "     PCI address     %s\n", e->bus);
-    fprintf(file, "     double          %s\n", d->fp64 ? "yes (fp64)" : "no: --precision single only");
-    fprintf(file, "     float rounding  divide and sqrt %s\n", d->fp32_correct_divide ? "can be correct" : "to 2.5 and 3 ulp");
-    fprintf(file, "     memory          %.2f GiB, largest array %.2f GiB, local %.0f KiB%s\n", (double)d->global_mem / (1 << 30),
-        (double)d->max_alloc / (1 << 30), (double)d->local_mem / 1024, d->unified ? ", shared with the host" : "");
-    fprintf(file, "     compute units   %u, work-groups up to %zu\n", d->compute_units, d->max_group);
+    fprintf(
+        file, "     double          %s\n", d->fp64 ? "yes (fp64)" : "no: --precision single only");
+    fprintf(file, "     float rounding  divide and sqrt %s\n",
+        d->fp32_correct_divide ? "can be correct" : "to 2.5 and 3 ulp");
+    fprintf(file, "     memory          %.2f GiB, largest array %.2f GiB, local %.0f KiB%s\n",
+        (double)d->global_mem / (1 << 30), (double)d->max_alloc / (1 << 30),
+        (double)d->local_mem / 1024, d->unified ? ", shared with the host" : "");
+    fprintf(
+        file, "     compute units   %u, work-groups up to %zu\n", d->compute_units, d->max_group);
 }
 
 int device_list(int n_rank, FILE *file)
@@ -199,13 +219,15 @@ int device_list(int n_rank, FILE *file)
     for (int i = 0; i < n_entry && n > 0; i++) {
         const struct device_entry *e = &entry[i];
         if (e->platform_index != platform)
-            fprintf(file, "platform %d: %s (%s)\n", e->platform_index, e->info.platform_name, e->info.platform_version);
+            fprintf(file, "platform %d: %s (%s)\n", e->platform_index, e->info.platform_name,
+                e->info.platform_version);
         platform = e->platform_index;
         print_device(e, file);
     }
     for (int r = 0; r < n_rank && n > 0; r++) {
         const struct device_entry *e = &entry[order[r % n]];
-        fprintf(file, "rank %d of a node takes %d:%d  %s\n", r, e->platform_index, e->device_index, e->info.name);
+        fprintf(file, "rank %d of a node takes %d:%d  %s\n", r, e->platform_index, e->device_index,
+            e->info.name);
     }
     free(order);
     free(entry);

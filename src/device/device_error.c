@@ -4,9 +4,9 @@
 
 #include "comm/fail.h"
 
-#define ENTRY(code)                                                                                                                                  \
-    {                                                                                                                                                \
-        code, #code                                                                                                                                  \
+#define ENTRY(code)                                                                                \
+    {                                                                                              \
+        code, #code                                                                                \
     }
 
 /* Codes of OpenCL 1.2 and of the ICD loader. */
@@ -85,5 +85,7 @@ const char *device_error_name(cl_int code)
 
 void device_check(cl_int code, const char *call, const char *file, int line)
 {
-    if (code != CL_SUCCESS) fail_stop(EXIT_DEVICE, "%s:%d: %s: %s (%d)", file, line, call, device_error_name(code), (int)code);
+    if (code != CL_SUCCESS)
+        fail_stop(EXIT_DEVICE, "%s:%d: %s: %s (%d)", file, line, call, device_error_name(code),
+            (int)code);
 }

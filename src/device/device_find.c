@@ -12,7 +12,8 @@ static void trim(char *text)
 {
     size_t lead = strspn(text, " \t\n");
     memmove(text, text + lead, strlen(text + lead) + 1);
-    for (size_t n = strlen(text); n > 0 && isspace((unsigned char)text[n - 1]); n--) text[n - 1] = 0;
+    for (size_t n = strlen(text); n > 0 && isspace((unsigned char)text[n - 1]); n--)
+        text[n - 1] = 0;
 }
 
 static void device_text(cl_device_id id, cl_device_info what, char text[DEVICE_TEXT])
@@ -36,7 +37,8 @@ static bool has_extension(cl_device_id id, const char *name)
     size_t bytes = 0;
     if (clGetDeviceInfo(id, CL_DEVICE_EXTENSIONS, 0, NULL, &bytes) != CL_SUCCESS) return false;
     char *all = fail_alloc(bytes + 1);
-    bool has = clGetDeviceInfo(id, CL_DEVICE_EXTENSIONS, bytes, all, NULL) == CL_SUCCESS && strstr(all, name);
+    bool has = clGetDeviceInfo(id, CL_DEVICE_EXTENSIONS, bytes, all, NULL) == CL_SUCCESS &&
+               strstr(all, name);
     free(all);
     return has;
 }
@@ -46,13 +48,16 @@ static void bus_address(cl_device_id id, char *text, size_t n)
 {
     cl_uint khr[4]; /* domain, bus, device, function */
     text[0] = 0;
-    if (has_extension(id, "cl_khr_pci_bus_info") && !clGetDeviceInfo(id, 0x410F /* CL_DEVICE_PCI_BUS_INFO_KHR */, sizeof khr, khr, NULL)) {
+    if (has_extension(id, "cl_khr_pci_bus_info") &&
+        !clGetDeviceInfo(id, 0x410F /* CL_DEVICE_PCI_BUS_INFO_KHR */, sizeof khr, khr, NULL)) {
         snprintf(text, n, "%04x:%02x:%02x.%x", khr[0], khr[1], khr[2], khr[3]);
         return;
     }
     cl_uint bus, slot;
-    if (has_extension(id, "cl_nv_device_attribute_query") && !clGetDeviceInfo(id, 0x4008 /* CL_DEVICE_PCI_BUS_ID_NV */, sizeof bus, &bus, NULL) &&
-        !clGetDeviceInfo(id, 0x4009 /* CL_DEVICE_PCI_SLOT_ID_NV: device << 3 | function */, sizeof slot, &slot, NULL)) {
+    if (has_extension(id, "cl_nv_device_attribute_query") &&
+        !clGetDeviceInfo(id, 0x4008 /* CL_DEVICE_PCI_BUS_ID_NV */, sizeof bus, &bus, NULL) &&
+        !clGetDeviceInfo(id, 0x4009 /* CL_DEVICE_PCI_SLOT_ID_NV: device << 3 | function */,
+            sizeof slot, &slot, NULL)) {
         snprintf(text, n, "%04x:%02x:%02x.%x", 0u, bus, slot >> 3, slot & 7);
         return;
     }
@@ -60,9 +65,11 @@ static void bus_address(cl_device_id id, char *text, size_t n)
         cl_uint type; /* 1: PCI Express */
         unsigned char unused[17], bus, device, function;
     } amd;
-    if (has_extension(id, "cl_amd_device_attribute_query") && !clGetDeviceInfo(id, 0x4037 /* CL_DEVICE_TOPOLOGY_AMD */, sizeof amd, &amd, NULL) &&
+    if (has_extension(id, "cl_amd_device_attribute_query") &&
+        !clGetDeviceInfo(id, 0x4037 /* CL_DEVICE_TOPOLOGY_AMD */, sizeof amd, &amd, NULL) &&
         amd.type == 1)
-        snprintf(text, n, "%04x:%02x:%02x.%x", 0u, (unsigned)amd.bus, (unsigned)amd.device, (unsigned)amd.function);
+        snprintf(text, n, "%04x:%02x:%02x.%x", 0u, (unsigned)amd.bus, (unsigned)amd.device,
+            (unsigned)amd.function);
 }
 
 static void query(cl_platform_id platform, cl_device_id id, struct device_entry *entry)
@@ -91,14 +98,19 @@ static void query(cl_platform_id platform, cl_device_id id, struct device_entry 
     clGetDeviceInfo(id, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof d->max_alloc, &d->max_alloc, NULL);
     clGetDeviceInfo(id, CL_DEVICE_LOCAL_MEM_SIZE, sizeof d->local_mem, &d->local_mem, NULL);
     clGetDeviceInfo(id, CL_DEVICE_MAX_WORK_GROUP_SIZE, sizeof d->max_group, &d->max_group, NULL);
-    clGetDeviceInfo(id, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof d->compute_units, &d->compute_units, NULL);
+    clGetDeviceInfo(
+        id, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof d->compute_units, &d->compute_units, NULL);
     d->fp64 = fp64 != 0 && has_extension(id, "cl_khr_fp64");
     d->fp32_correct_divide = fp32 & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT;
     d->unified = unified;
     d->is_pocl = strstr(d->platform_name, "Portable Computing Language");
-    d->one_lane = d->is_pocl && (d->type & CL_DEVICE_TYPE_CPU); /* others vectorise over the work-items of a group */
+    /* others vectorise over the work-items of a group */
+    d->one_lane = d->is_pocl && (d->type & CL_DEVICE_TYPE_CPU);
     bus_address(id, entry->bus, sizeof entry->bus);
-    entry->unusable = d->type & CL_DEVICE_TYPE_CUSTOM ? "not programmable" : !available ? "not available" : !compiler ? "no compiler" : NULL;
+    entry->unusable = d->type & CL_DEVICE_TYPE_CUSTOM ? "not programmable"
+                      : !available                    ? "not available"
+                      : !compiler                     ? "no compiler"
+                                                      : NULL;
 }
 
 int device_find(struct device_entry **entry, cl_int *code)
@@ -112,10 +124,14 @@ int device_find(struct device_entry **entry, cl_int *code)
     *code = clGetPlatformIDs(n_platform, platform, NULL);
     for (cl_uint p = 0; p < n_platform && *code == CL_SUCCESS; p++) {
         cl_uint n_device = 0;
-        /* A platform without devices says CL_DEVICE_NOT_FOUND; a broken one should not hide the others. */
-        if (clGetDeviceIDs(platform[p], CL_DEVICE_TYPE_ALL, 0, NULL, &n_device) != CL_SUCCESS || n_device == 0) continue;
+        /* A platform without devices says CL_DEVICE_NOT_FOUND; a broken one should not hide the
+         * others. */
+        if (clGetDeviceIDs(platform[p], CL_DEVICE_TYPE_ALL, 0, NULL, &n_device) != CL_SUCCESS ||
+            n_device == 0)
+            continue;
         cl_device_id *id = fail_alloc(n_device * sizeof *id);
-        if (clGetDeviceIDs(platform[p], CL_DEVICE_TYPE_ALL, n_device, id, NULL) != CL_SUCCESS) n_device = 0;
+        if (clGetDeviceIDs(platform[p], CL_DEVICE_TYPE_ALL, n_device, id, NULL) != CL_SUCCESS)
+            n_device = 0;
         *entry = fail_realloc(*entry, (size_t)(n + (int)n_device) * sizeof **entry);
         for (cl_uint d = 0; d < n_device; d++, n++) {
             memset(&(*entry)[n], 0, sizeof **entry);
@@ -129,7 +145,8 @@ int device_find(struct device_entry **entry, cl_int *code)
     return n;
 }
 
-/* Part `want` [n] of a choice against an index and a name: empty matches all, a number the index, else a part of the name in any case. */
+/* Part `want` [n] of a choice against an index and a name: empty matches all, a number the index,
+ * else a part of the name in any case. */
 static bool matches(const char *want, size_t n, int index, const char *name)
 {
     if (n == 0) return true;
@@ -148,9 +165,13 @@ static bool chosen(const struct device_entry *e, const char *choice)
     if (!choice) return true;
     const char *colon = strchr(choice, ':');
     size_t n = colon ? (size_t)(colon - choice) : strlen(choice);
-    if (!colon && strspn(choice, "0123456789") < n && matches(choice, n, e->device_index, e->info.name)) return true; /* a device's name alone */
+    /* a device's name alone */
+    if (!colon && strspn(choice, "0123456789") < n &&
+        matches(choice, n, e->device_index, e->info.name))
+        return true;
     /* pocl calls itself so in its version only. */
-    if (!matches(choice, n, e->platform_index, e->info.platform_name) && !matches(choice, n, e->platform_index, e->info.platform_version))
+    if (!matches(choice, n, e->platform_index, e->info.platform_name) &&
+        !matches(choice, n, e->platform_index, e->info.platform_version))
         return false;
     return !colon || matches(colon + 1, strlen(colon + 1), e->device_index, e->info.name);
 }
@@ -167,22 +188,31 @@ static bool before(const struct device_entry *a, const struct device_entry *b)
     int c = strcmp(a->bus, b->bus);
     if (c == 0) c = strcmp(a->info.platform_name, b->info.platform_name);
     if (c == 0) c = strcmp(a->info.name, b->info.name);
-    if (c == 0) c = a->platform_index != b->platform_index ? a->platform_index - b->platform_index : a->device_index - b->device_index;
+    if (c == 0)
+        c = a->platform_index != b->platform_index ? a->platform_index - b->platform_index
+                                                   : a->device_index - b->device_index;
     return c < 0;
 }
 
-int device_deal(const struct device_entry *entry, int n_entry, const char *choice, bool need_fp64, int *order)
+int device_deal(
+    const struct device_entry *entry, int n_entry, const char *choice, bool need_fp64, int *order)
 {
     int best = 2, n = 0;
     bool any_fp64 = false;
     for (int i = 0; i < n_entry; i++)
-        if (chosen(&entry[i], choice) && rank_of_kind(&entry[i].info) < best) best = rank_of_kind(&entry[i].info);
+        if (chosen(&entry[i], choice) && rank_of_kind(&entry[i].info) < best)
+            best = rank_of_kind(&entry[i].info);
     for (int i = 0; i < n_entry; i++)
-        if (chosen(&entry[i], choice) && rank_of_kind(&entry[i].info) == best) any_fp64 |= entry[i].info.fp64;
+        if (chosen(&entry[i], choice) && rank_of_kind(&entry[i].info) == best)
+            any_fp64 |= entry[i].info.fp64;
     for (int i = 0; i < n_entry; i++) {
         const struct device_entry *e = &entry[i];
-        if (!chosen(e, choice) || rank_of_kind(&e->info) != best || (need_fp64 && any_fp64 && !e->info.fp64)) continue;
-        bool again = false; /* one GPU under two drivers; within one platform an address may stand for several devices */
+        if (!chosen(e, choice) || rank_of_kind(&e->info) != best ||
+            (need_fp64 && any_fp64 && !e->info.fp64))
+            continue;
+        /* one GPU under two drivers; within one platform an address may stand for several
+         * devices */
+        bool again = false;
         for (int k = 0; k < n; k++) {
             const struct device_entry *o = &entry[order[k]];
             again |= e->bus[0] && !strcmp(o->bus, e->bus) && o->platform_index != e->platform_index;
@@ -205,6 +235,7 @@ const char *device_kind(const struct device *dev)
 
 void device_print_short(const struct device_entry *e, FILE *file)
 {
-    fprintf(file, "  %d:%d  %s: %s (%s, %s%s%s)\n", e->platform_index, e->device_index, e->info.platform_name, e->info.name, device_kind(&e->info),
+    fprintf(file, "  %d:%d  %s: %s (%s, %s%s%s)\n", e->platform_index, e->device_index,
+        e->info.platform_name, e->info.name, device_kind(&e->info),
         e->info.fp64 ? "fp64" : "no fp64", e->unusable ? ", " : "", e->unusable ? e->unusable : "");
 }

@@ -44,9 +44,11 @@ static void release(cl_event *event)
     *event = NULL;
 }
 
-/* The queue that reads back what is packed for sending: one beside the kernels, where a device can copy while it computes. One that computes on the
- * host's cores has workers for either; with a queue of its own they would come to the copy after the interior, if they find that first. Measured on
- * one core, two ranks: 46 to 69 % of the steps then had messages under most of the interior, 79 to 83 % with the queue of the kernels. */
+/* The queue that reads back what is packed for sending: one beside the kernels, where a device can
+ * copy while it computes. One that computes on the host's cores has workers for either; with a
+ * queue of its own they would come to the copy after the interior, if they find that first.
+ * Measured on one core, two ranks: 46 to 69 % of the steps then had messages under most of the
+ * interior, 79 to 83 % with the queue of the kernels. */
 static cl_command_queue read_queue(const struct device *dev)
 {
     return device_shares_cores(dev) ? dev->compute : dev->copy;
@@ -62,12 +64,14 @@ static void complete_sends(struct device *dev, struct halo *halo, struct timers 
     timer_end(timers, TIMER_EXCHANGE);
 }
 
-void exchange_begin(struct device *dev, struct exchange *x, struct launch *pack, struct timers *timers)
+void exchange_begin(
+    struct device *dev, struct exchange *x, struct launch *pack, struct timers *timers)
 {
     complete_sends(dev, x->halo, timers);
     launch_run(pack, dev->compute, x->n_send, 0, NULL, &x->packed_event);
     check_cl(clFlush(dev->compute));
-    buffer_read_begin(dev, read_queue(dev), &x->packed, 0, (size_t)x->n_send * x->record, x->send_staging.host, 1, &x->packed_event, &x->read_event);
+    buffer_read_begin(dev, read_queue(dev), &x->packed, 0, (size_t)x->n_send * x->record,
+        x->send_staging.host, 1, &x->packed_event, &x->read_event);
     check_cl(clFlush(read_queue(dev)));
     release(&x->written_event); /* long done: the receive staging is free */
     timer_begin(timers, TIMER_EXCHANGE);
@@ -76,8 +80,9 @@ void exchange_begin(struct device *dev, struct exchange *x, struct launch *pack,
     trace_lap(dev->trace, "pack");
 }
 
-/* Waits until the send buffer is full, and sends. A host that shares cores with the device sleeps meanwhile; elsewhere it drives MPI, and does not
- * trust the driver's wait, which may be a spin without progress. */
+/* Waits until the send buffer is full, and sends. A host that shares cores with the device sleeps
+ * meanwhile; elsewhere it drives MPI, and does not trust the driver's wait, which may be a spin
+ * without progress. */
 static void send(struct device *dev, struct exchange *x, struct timers *timers)
 {
     trace_lap(dev->trace, "enqueue");
@@ -108,11 +113,13 @@ static void receive(struct device *dev, struct halo *halo, cl_event *most, struc
     trace_messages(dev->trace, halo->n_recv, halo->recv_rank, false);
 }
 
-const cl_event *exchange_swap(struct device *dev, struct exchange *x, struct buffer *to, size_t offset, cl_event *most, struct timers *timers)
+const cl_event *exchange_swap(struct device *dev, struct exchange *x, struct buffer *to,
+    size_t offset, cl_event *most, struct timers *timers)
 {
     send(dev, x, timers);
     receive(dev, x->halo, most, timers);
-    buffer_write_begin(dev, dev->copy, to, offset, (size_t)x->n_recv * x->record, x->recv_staging.host, 0, NULL, &x->written_event);
+    buffer_write_begin(dev, dev->copy, to, offset, (size_t)x->n_recv * x->record,
+        x->recv_staging.host, 0, NULL, &x->written_event);
     check_cl(clFlush(dev->copy));
     release(&x->read_event);
     release(&x->packed_event);

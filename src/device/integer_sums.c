@@ -24,7 +24,8 @@ void integer_sums_carry(struct sum *s)
     s->hi += from_mid;
 }
 
-/* The nearest double but for the last bit; a function of the sum alone, not of how it lies in its three integers. */
+/* The nearest double but for the last bit; a function of the sum alone, not of how it lies in its
+ * three integers. */
 static double value_of(struct sum s)
 {
     integer_sums_carry(&s);
@@ -37,7 +38,8 @@ static double value_of(struct sum s)
     return s.bad ? (double)NAN : sign * (ldexp((double)s.hi, -20) + rest);
 }
 
-void integer_sums_run(struct device *dev, struct launch *launch, const struct buffer *partial, int n_sum, struct sum *sum)
+void integer_sums_run(struct device *dev, struct launch *launch, const struct buffer *partial,
+    int n_sum, struct sum *sum)
 {
     size_t bytes = (size_t)(SUMS_GROUPS * n_sum * SUMS_WIDTH) * sizeof(int64_t);
     int64_t *part = fail_alloc(bytes);
@@ -63,6 +65,7 @@ void integer_sums_all(const struct comm *comm, const struct sum *sum, int n, dou
         for (int i = 0; i < SUMS_WIDTH; i++) all[k][i] = one[i];
     }
     comm_sum_i64(comm, all[0], n * SUMS_WIDTH);
-    for (int k = 0; k < n; k++) value[k] = value_of((struct sum){all[k][0], all[k][1], all[k][2], all[k][3]});
+    for (int k = 0; k < n; k++)
+        value[k] = value_of((struct sum){all[k][0], all[k][1], all[k][2], all[k][3]});
     free(all);
 }

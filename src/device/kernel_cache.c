@@ -10,9 +10,9 @@
 
 enum { PATIENCE_S = 60, POLL_MS = 5 };
 
-/* Waits for whoever compiles, but not for ever: a process that holds the lock may be stopped (Ctrl-Z, a debugger, a paused job), and all others of
- * this
- * user would hang with it. Without the lock the race is possible, once in about a hundred cold builds. */
+/* Waits for whoever compiles, but not for ever: a process that holds the lock may be stopped
+ * (Ctrl-Z, a debugger, a paused job), and all others of this user would hang with it. Without the
+ * lock the race is possible, once in about a hundred cold builds. */
 static bool lock_within_patience(int lock)
 {
     static bool lost_patience;
@@ -31,7 +31,8 @@ int kernel_cache_lock(const struct device *dev)
 {
     if (!dev->is_pocl) return -1;
     const char *folder = getenv("TMPDIR");
-    char *path = fail_format("%s/democles-kernels-%d.lock", folder && folder[0] ? folder : "/tmp", (int)getuid());
+    char *path = fail_format(
+        "%s/democles-kernels-%d.lock", folder && folder[0] ? folder : "/tmp", (int)getuid());
     int lock = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
     free(path);
     if (lock >= 0 && !lock_within_patience(lock)) {

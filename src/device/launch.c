@@ -20,7 +20,9 @@ static char *arg_text(const struct launch *launch, int i, cl_kernel_arg_info wha
     char text[256] = "";
     cl_int code = clGetKernelArgInfo(launch->kernel, (cl_uint)i, what, sizeof text, text, NULL);
     if (code == CL_KERNEL_ARG_INFO_NOT_AVAILABLE)
-        fail_stop(EXIT_DEVICE, "%s does not tell the names of kernel arguments (clGetKernelArgInfo), which democles needs: use another driver",
+        fail_stop(EXIT_DEVICE,
+            "%s does not tell the names of kernel arguments (clGetKernelArgInfo), which democles "
+            "needs: use another driver",
             launch->program->dev->platform_version);
     check_cl_as(code, "clGetKernelArgInfo");
     return fail_strdup(text);
@@ -34,24 +36,30 @@ static void find_args(struct launch *launch)
     launch->arg = fail_alloc(n * sizeof *launch->arg);
     for (int i = 0; i < launch->n_arg; i++) {
         cl_kernel_arg_address_qualifier space;
-        check_cl(clGetKernelArgInfo(launch->kernel, (cl_uint)i, CL_KERNEL_ARG_ADDRESS_QUALIFIER, sizeof space, &space, NULL));
+        check_cl(clGetKernelArgInfo(launch->kernel, (cl_uint)i, CL_KERNEL_ARG_ADDRESS_QUALIFIER,
+            sizeof space, &space, NULL));
         launch->arg[i].name = arg_text(launch, i, CL_KERNEL_ARG_NAME);
         launch->arg[i].type = arg_text(launch, i, CL_KERNEL_ARG_TYPE_NAME);
-        launch->arg[i].is_global = space == CL_KERNEL_ARG_ADDRESS_GLOBAL || space == CL_KERNEL_ARG_ADDRESS_CONSTANT;
+        launch->arg[i].is_global =
+            space == CL_KERNEL_ARG_ADDRESS_GLOBAL || space == CL_KERNEL_ARG_ADDRESS_CONSTANT;
     }
 }
 
-/* Work-group size that the kernel declares, else our own, for which registers may allow less than the device does. A size that is declared is known
- * to the driver, who has built the kernel for it; what it says of the kernel (rusticl 22.3 on llvmpipe: 32) need not be true then. */
+/* Work-group size that the kernel declares, else our own, for which registers may allow less than
+ * the device does. A size that is declared is known to the driver, who has built the kernel for it;
+ * what it says of the kernel (rusticl 22.3 on llvmpipe: 32) need not be true then. */
 static size_t local_size(const struct launch *launch)
 {
     size_t declared[3] = {0, 0, 0}, most = 0;
     cl_device_id id = launch->program->dev->id;
-    check_cl(clGetKernelWorkGroupInfo(launch->kernel, id, CL_KERNEL_COMPILE_WORK_GROUP_SIZE, sizeof declared, declared, NULL));
-    check_cl(clGetKernelWorkGroupInfo(launch->kernel, id, CL_KERNEL_WORK_GROUP_SIZE, sizeof most, &most, NULL));
+    check_cl(clGetKernelWorkGroupInfo(
+        launch->kernel, id, CL_KERNEL_COMPILE_WORK_GROUP_SIZE, sizeof declared, declared, NULL));
+    check_cl(clGetKernelWorkGroupInfo(
+        launch->kernel, id, CL_KERNEL_WORK_GROUP_SIZE, sizeof most, &most, NULL));
     size_t local = declared[0] > 0 ? declared[0] : LAUNCH_LOCAL;
     if (declared[0] == 0 && local > most)
-        fail_stop(EXIT_DEVICE, "kernel %s: work-groups of %zu, but %s allows %zu", launch->name, local, launch->program->dev->name, most);
+        fail_stop(EXIT_DEVICE, "kernel %s: work-groups of %zu, but %s allows %zu", launch->name,
+            local, launch->program->dev->name, most);
     return local;
 }
 
@@ -105,7 +113,8 @@ static _Noreturn void stop(const struct launch *launch, const char *arg, const c
     char all[2048] = "";
     for (int i = 0; i < launch->n_arg; i++) {
         size_t n = strlen(all);
-        snprintf(all + n, sizeof all - n, "%s%s %s", i ? ", " : "", launch->arg[i].type, launch->arg[i].name);
+        snprintf(all + n, sizeof all - n, "%s%s %s", i ? ", " : "", launch->arg[i].type,
+            launch->arg[i].name);
     }
     fail_stop(EXIT_DEVICE, "kernel %s: argument `%s` %s; it has: %s", launch->name, arg, why, all);
 }
@@ -153,8 +162,8 @@ static size_t type_size(const struct launch *launch, const char *type)
     static const struct {
         const char *name;
         size_t size;
-    } known[] = {
-        {"char", 1}, {"uchar", 1}, {"short", 2}, {"ushort", 2}, {"int", 4}, {"uint", 4}, {"float", 4}, {"long", 8}, {"ulong", 8}, {"double", 8}};
+    } known[] = {{"char", 1}, {"uchar", 1}, {"short", 2}, {"ushort", 2}, {"int", 4}, {"uint", 4},
+        {"float", 4}, {"long", 8}, {"ulong", 8}, {"double", 8}};
     if (strcmp(type, "real") == 0) return launch->program->real_is_float ? 4 : 8;
     if (strcmp(type, "preal") == 0) return launch->program->position_is_float ? 4 : 8;
     for (size_t k = 0; k < sizeof known / sizeof *known; k++)
@@ -184,10 +193,13 @@ bool launch_set_real_if(struct launch *launch, const char *arg, double value)
     int i = find(launch, arg);
     if (i < 0) return false;
     const char *type = launch->arg[i].type;
-    if (strcmp(type, "float") && strcmp(type, "double") && strcmp(type, "real") && strcmp(type, "preal")) stop(launch, arg, "is no real number");
+    if (strcmp(type, "float") && strcmp(type, "double") && strcmp(type, "real") &&
+        strcmp(type, "preal"))
+        stop(launch, arg, "is no real number");
     float single = (float)value;
-    return type_size(launch, type) == sizeof single ? launch_set_if(launch, arg, &single, sizeof single)
-                                                    : launch_set_if(launch, arg, &value, sizeof value);
+    return type_size(launch, type) == sizeof single
+               ? launch_set_if(launch, arg, &single, sizeof single)
+               : launch_set_if(launch, arg, &value, sizeof value);
 }
 
 void launch_set(struct launch *launch, const char *arg, const void *value, size_t size)
@@ -217,9 +229,12 @@ void launch_check(const struct launch *launch)
         const struct launch_arg *a = &launch->arg[i];
         size_t n = strlen(missing);
         if (!a->bound) snprintf(missing + n, sizeof missing - n, " %s", a->name);
-        else if (a->buffer && !a->buffer->mem) snprintf(missing + n, sizeof missing - n, " %s (buffer %s has no memory)", a->name, a->buffer->name);
+        else if (a->buffer && !a->buffer->mem)
+            snprintf(missing + n, sizeof missing - n, " %s (buffer %s has no memory)", a->name,
+                a->buffer->name);
     }
-    if (missing[0]) fail_stop(EXIT_DEVICE, "kernel %s: arguments not bound:%s", launch->name, missing);
+    if (missing[0])
+        fail_stop(EXIT_DEVICE, "kernel %s: arguments not bound:%s", launch->name, missing);
 }
 
 size_t launch_padded(int64_t n_item, size_t local)
@@ -236,7 +251,8 @@ static void refresh(struct launch *launch)
     for (int i = 0; i < launch->n_arg; i++) {
         const struct launch_arg *a = &launch->arg[i];
         if (!a->bound || (a->buffer && !a->buffer->mem)) launch_check(launch);
-        if (a->buffer && a->buffer->serial != a->serial) set_mem(launch, i, a->buffer->mem, a->buffer);
+        if (a->buffer && a->buffer->serial != a->serial)
+            set_mem(launch, i, a->buffer->mem, a->buffer);
     }
 }
 
@@ -247,8 +263,10 @@ static void harvest(struct launch *launch)
     if (p->n > 0) check_cl(clWaitForEvents((cl_uint)p->n, p->event));
     for (int i = 0; i < p->n; i++) {
         cl_ulong start, end; /* [ns] */
-        check_cl(clGetEventProfilingInfo(p->event[i], CL_PROFILING_COMMAND_START, sizeof start, &start, NULL));
-        check_cl(clGetEventProfilingInfo(p->event[i], CL_PROFILING_COMMAND_END, sizeof end, &end, NULL));
+        check_cl(clGetEventProfilingInfo(
+            p->event[i], CL_PROFILING_COMMAND_START, sizeof start, &start, NULL));
+        check_cl(
+            clGetEventProfilingInfo(p->event[i], CL_PROFILING_COMMAND_END, sizeof end, &end, NULL));
         launch->seconds += 1e-9 * (double)(end - start);
         check_cl(clReleaseEvent(p->event[i]));
     }
@@ -261,7 +279,8 @@ double launch_seconds(struct launch *launch)
     return launch->seconds;
 }
 
-void launch_run(struct launch *launch, cl_command_queue queue, int64_t n_item, cl_uint n_wait, const cl_event *wait, cl_event *event)
+void launch_run(struct launch *launch, cl_command_queue queue, int64_t n_item, cl_uint n_wait,
+    const cl_event *wait, cl_event *event)
 {
     if (n_item <= 0) {
         if (n_wait > 0 || event) check_cl(clEnqueueMarkerWithWaitList(queue, n_wait, wait, event));
@@ -269,14 +288,18 @@ void launch_run(struct launch *launch, cl_command_queue queue, int64_t n_item, c
     }
     struct device *dev = launch->program->dev;
     struct profile *p = launch->profile;
-    size_t n_group = ((size_t)n_item + launch->batch - 1) / launch->batch, global = launch_padded((int64_t)(n_group * launch->local), launch->local);
+    size_t n_group = ((size_t)n_item + launch->batch - 1) / launch->batch,
+           global = launch_padded((int64_t)(n_group * launch->local), launch->local);
     cl_event own, *done = trace_event(dev->trace, event ? event : p ? &own : NULL);
 
     refresh(launch);
     bool compiles = dev->is_pocl && global > launch->largest;
     int lock = compiles ? kernel_cache_lock(dev) : -1;
-    cl_int code = clEnqueueNDRangeKernel(queue, launch->kernel, 1, NULL, &global, &launch->local, n_wait, wait, done);
-    if (code != CL_SUCCESS) fail_stop(EXIT_DEVICE, "kernel %s: clEnqueueNDRangeKernel: %s (%d)", launch->name, device_error_name(code), (int)code);
+    cl_int code = clEnqueueNDRangeKernel(
+        queue, launch->kernel, 1, NULL, &global, &launch->local, n_wait, wait, done);
+    if (code != CL_SUCCESS)
+        fail_stop(EXIT_DEVICE, "kernel %s: clEnqueueNDRangeKernel: %s (%d)", launch->name,
+            device_error_name(code), (int)code);
     if (compiles) {
         check_cl(clFinish(queue));
         kernel_cache_unlock(lock);

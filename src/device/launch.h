@@ -1,8 +1,10 @@
 /* A launch: a kernel with its arguments bound by name, ready to be enqueued again and again.
  *
- * Names come from the kernel's own signature (clGetKernelArgInfo), so an argument that a feature removes needs no placeholder and an order cannot be
- * wrong. 1-D ranges only. The work-group size is what the kernel declares with reqd_work_group_size(n,1,1), else LAUNCH_LOCAL. The range is padded up
- * to whole groups and coarsely beyond (see launch_padded), so a kernel takes the number of items as an argument and begins `if (i >= n) return`. */
+ * Names come from the kernel's own signature (clGetKernelArgInfo), so an argument that a feature
+ * removes needs no placeholder and an order cannot be wrong. 1-D ranges only. The work-group size
+ * is what the kernel declares with reqd_work_group_size(n,1,1), else LAUNCH_LOCAL. The range is
+ * padded up to whole groups and coarsely beyond (see launch_padded), so a kernel takes the number
+ * of items as an argument and begins `if (i >= n) return`. */
 #ifndef DEMOCLES_LAUNCH_H
 #define DEMOCLES_LAUNCH_H
 
@@ -42,16 +44,18 @@ void launch_set_batch(struct launch *launch, size_t n_item);
 /* Whether this build of the kernel has the argument. */
 bool launch_has(const struct launch *launch, const char *arg);
 
-/* Bind a pointer argument. launch_bind_buffer remembers the buffer (borrowed, must stay where it is): when it grows, or when two buffers are
- * swapped by value, the next run takes the new memory. An unknown name, or a value argument, is our bug: message with the argument list, stop. The
- * _if forms are for arguments that features remove: false if there is none of that name. */
+/* Bind a pointer argument. launch_bind_buffer remembers the buffer (borrowed, must stay where it
+ * is): when it grows, or when two buffers are swapped by value, the next run takes the new memory.
+ * An unknown name, or a value argument, is our bug: message with the argument list, stop. The _if
+ * forms are for arguments that features remove: false if there is none of that name. */
 void launch_bind(struct launch *launch, const char *arg, cl_mem mem);
 void launch_bind_buffer(struct launch *launch, const char *arg, const struct buffer *buffer);
 bool launch_bind_if(struct launch *launch, const char *arg, cl_mem mem);
 bool launch_bind_buffer_if(struct launch *launch, const char *arg, const struct buffer *buffer);
 
-/* Set a value argument. The size has to be that of the declared type where launch.c knows it (scalars of OpenCL C, real, preal). The same rules.
- * launch_set_real converts to what the kernel declares: float, double, real or preal. */
+/* Set a value argument. The size has to be that of the declared type where launch.c knows it
+ * (scalars of OpenCL C, real, preal). The same rules. launch_set_real converts to what the kernel
+ * declares: float, double, real or preal. */
 void launch_set(struct launch *launch, const char *arg, const void *value, size_t size);
 void launch_set_int(struct launch *launch, const char *arg, int32_t value);
 void launch_set_long(struct launch *launch, const char *arg, int64_t value);
@@ -60,19 +64,24 @@ bool launch_set_if(struct launch *launch, const char *arg, const void *value, si
 bool launch_set_int_if(struct launch *launch, const char *arg, int32_t value);
 bool launch_set_real_if(struct launch *launch, const char *arg, double value);
 
-/* Stops with the names of all arguments that are not bound. Once, after set-up; launch_run asserts the same. */
+/* Stops with the names of all arguments that are not bound. Once, after set-up; launch_run asserts
+ * the same. */
 void launch_check(const struct launch *launch);
 
-/* Enqueues n_item work-items, padded. n_item <= 0 enqueues no kernel, but still waits for `wait` in the queue and still gives an event. `event`
- * may be NULL; else the caller releases it. Allocates nothing. On pocl the first run, and one larger than all before, waits until it is done,
- * because pocl compiles then (kernel_cache.h). */
-void launch_run(struct launch *launch, cl_command_queue queue, int64_t n_item, cl_uint n_wait, const cl_event *wait, cl_event *event);
+/* Enqueues n_item work-items, padded. n_item <= 0 enqueues no kernel, but still waits for `wait` in
+ * the queue and still gives an event. `event` may be NULL; else the caller releases it. Allocates
+ * nothing. On pocl the first run, and one larger than all before, waits until it is done, because
+ * pocl compiles then (kernel_cache.h). */
+void launch_run(struct launch *launch, cl_command_queue queue, int64_t n_item, cl_uint n_wait,
+    const cl_event *wait, cl_event *event);
 
-/* Global size for n_item > 0: whole groups, above 64 groups rounded up to 64 steps per power of two (at most 1.6 % of empty items), because pocl
- * keeps a list of the sizes it has seen, and list rebuilds change sizes all the time. */
+/* Global size for n_item > 0: whole groups, above 64 groups rounded up to 64 steps per power of two
+ * (at most 1.6 % of empty items), because pocl keeps a list of the sizes it has seen, and list
+ * rebuilds change sizes all the time. */
 size_t launch_padded(int64_t n_item, size_t local);
 
-/* Device time of all runs so far [s]; 0 unless the device was opened with profiling. Waits for runs under way. */
+/* Device time of all runs so far [s]; 0 unless the device was opened with profiling. Waits for runs
+ * under way. */
 double launch_seconds(struct launch *launch);
 
 #endif

@@ -13,7 +13,8 @@ struct memory_row {
 
 struct memory_table {
     int n;
-    struct memory_row row[MEMORY_TABLE_ROWS]; /* in the order of their first allocation; further names share the last row */
+    /* in the order of their first allocation; further names share the last row */
+    struct memory_row row[MEMORY_TABLE_ROWS];
 };
 
 /* bytes < 0 where memory is freed. */

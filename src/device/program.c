@@ -7,11 +7,13 @@
 #include "comm/fail.h"
 #include "kernel_cache.h"
 
-/* Writes what the compiler saw beside the results, or into the temporary folder; returns the path, or why there is none. */
+/* Writes what the compiler saw beside the results, or into the temporary folder; returns the path,
+ * or why there is none. */
 static char *dump(const struct program *program, const char *source)
 {
     const char *folder = program->dev->dump_dir ? program->dev->dump_dir : getenv("TMPDIR");
-    char *path = fail_format("%s/%s_%d.cl", folder && folder[0] ? folder : "/tmp", program->name, (int)getpid());
+    char *path = fail_format(
+        "%s/%s_%d.cl", folder && folder[0] ? folder : "/tmp", program->name, (int)getpid());
     FILE *file = fopen(path, "w");
     bool good = file && fprintf(file, "/* %s */\n%s", program->options, source) > 0;
     if (file && fclose(file) != 0) good = false;
@@ -29,8 +31,10 @@ static _Noreturn void build_failed(const struct program *program, const char *so
     char *log = fail_alloc(bytes + 1);
     clGetProgramBuildInfo(program->id, program->dev->id, CL_PROGRAM_BUILD_LOG, bytes, log, NULL);
     fprintf(stderr, "%s\n", log); /* may be longer than a message */
-    fail_stop(EXIT_DEVICE, "program %s does not build on %s (%s): %s; log above; options: %s; source: %s", program->name, program->dev->name,
-        program->dev->platform_version, device_error_name(code), program->options, dump(program, source));
+    fail_stop(EXIT_DEVICE,
+        "program %s does not build on %s (%s): %s; log above; options: %s; source: %s",
+        program->name, program->dev->name, program->dev->platform_version, device_error_name(code),
+        program->options, dump(program, source));
 }
 
 static void build(struct program *program, const char *source)
@@ -44,14 +48,16 @@ static void build(struct program *program, const char *source)
     if (code != CL_SUCCESS) build_failed(program, source, code);
 }
 
-struct program *program_build(struct device *dev, const struct comm *comm, const char *name, const char *options, const char *const *sources)
+struct program *program_build(struct device *dev, const struct comm *comm, const char *name,
+    const char *options, const char *const *sources)
 {
     struct program *program = fail_alloc(sizeof *program);
     char *source = program_source(sources);
     program->dev = dev;
     program->name = fail_strdup(name);
     program->options = fail_format("-cl-std=CL1.2 -w -cl-kernel-arg-info%s -DWITH_ONE_LANE=%d %s",
-        dev->fp32_correct_divide ? " -cl-fp32-correctly-rounded-divide-sqrt" : "", dev->one_lane, options);
+        dev->fp32_correct_divide ? " -cl-fp32-correctly-rounded-divide-sqrt" : "", dev->one_lane,
+        options);
     program->real_is_float = strstr(options, "-DREAL_IS_FLOAT=1");
     program->position_is_float = strstr(options, "-DPOSITION_IS_FLOAT=1");
 
@@ -78,7 +84,8 @@ cl_kernel program_kernel(const struct program *program, const char *kernel)
     if (code == CL_INVALID_KERNEL_NAME) {
         char names[2048] = "";
         clGetProgramInfo(program->id, CL_PROGRAM_KERNEL_NAMES, sizeof names, names, NULL);
-        fail_stop(EXIT_DEVICE, "program %s has no kernel %s; it has: %s", program->name, kernel, names);
+        fail_stop(
+            EXIT_DEVICE, "program %s has no kernel %s; it has: %s", program->name, kernel, names);
     }
     check_cl_as(code, "clCreateKernel");
     return id;

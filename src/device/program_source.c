@@ -1,6 +1,7 @@
-/* Joins kernel files into one text: #include "x.h" is replaced by the header the first time and by nothing later, so the headers need no guard
- * against that (they have one for the host) and must not be included under an #if. #line marks let the compiler's messages name the file and line
- * of kernels/. */
+/* Joins kernel files into one text: #include "x.h" is replaced by the header the first time and by
+ * nothing later, so the headers need no guard against that (they have one for the host) and must
+ * not be included under an #if. #line marks let the compiler's messages name the file and line of
+ * kernels/. */
 #include "program.h"
 
 #include <errno.h>
@@ -29,7 +30,8 @@ static char *kernel_text(const char *name)
         return fail_strdup(known->text);
     }
     /* The folder is laid out as kernels/, or is flat. */
-    char *path = fail_format("%s/%s/%s", folder, known->name ? known->folder : ".", name), *text = NULL;
+    char *path = fail_format("%s/%s/%s", folder, known->name ? known->folder : ".", name),
+         *text = NULL;
     size_t bytes = 0;
     FILE *file = fopen(path, "r"), *copy = open_memstream(&text, &bytes);
     if (!file) {
@@ -37,9 +39,11 @@ static char *kernel_text(const char *name)
         path = fail_format("%s/%s", folder, name);
         file = fopen(path, "r");
     }
-    if (!file || !copy) fail_stop(EXIT_DEVICE, "DEMOCLES_KERNELS: cannot read %s: %s", path, strerror(errno));
+    if (!file || !copy)
+        fail_stop(EXIT_DEVICE, "DEMOCLES_KERNELS: cannot read %s: %s", path, strerror(errno));
     for (int c; (c = getc(file)) != EOF;) putc(c, copy);
-    if (ferror(file)) fail_stop(EXIT_DEVICE, "DEMOCLES_KERNELS: cannot read %s: %s", path, strerror(errno));
+    if (ferror(file))
+        fail_stop(EXIT_DEVICE, "DEMOCLES_KERNELS: cannot read %s: %s", path, strerror(errno));
     fclose(copy);
     fclose(file);
     free(path);
@@ -71,7 +75,8 @@ static bool first_time(struct join *join, const char *name)
 {
     for (int i = 0; i < join->n_done; i++)
         if (strcmp(join->done[i], name) == 0) return false;
-    if (join->n_done == MAX_FILES) fail_stop(EXIT_DEVICE, "more than %d kernel headers in one program", MAX_FILES);
+    if (join->n_done == MAX_FILES)
+        fail_stop(EXIT_DEVICE, "more than %d kernel headers in one program", MAX_FILES);
     join->done[join->n_done++] = fail_strdup(name);
     return true;
 }

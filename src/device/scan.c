@@ -4,7 +4,8 @@
 
 #include "comm/fail.h"
 
-enum { SCAN_BLOCK = 2048, SCAN_ITEM = 8 }; /* entries per work-group and per work-item of kernels/common/scan.cl */
+/* entries per work-group and per work-item of kernels/common/scan.cl */
+enum { SCAN_BLOCK = 2048, SCAN_ITEM = 8 };
 
 struct scan *scan_create(struct device *dev, const struct program *lists)
 {

@@ -1,4 +1,5 @@
-/* Prefix sums of ints on the device (kernels/common/scan.cl), and the totals that the host needs to size what comes next. */
+/* Prefix sums of ints on the device (kernels/common/scan.cl), and the totals that the host needs to
+ * size what comes next. */
 #ifndef DEMOCLES_SCAN_H
 #define DEMOCLES_SCAN_H
 

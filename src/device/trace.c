@@ -15,7 +15,8 @@ static int64_t now(void)
     return (int64_t)(timer_now() * 1e9);
 }
 
-struct trace *trace_create(const struct comm *comm, struct device *dev, const char *dir, int64_t first, int64_t n, int64_t n_step)
+struct trace *trace_create(const struct comm *comm, struct device *dev, const char *dir,
+    int64_t first, int64_t n, int64_t n_step)
 {
     struct trace *t = fail_alloc(sizeof *t);
     if (first < 0) {
@@ -42,7 +43,8 @@ void trace_free(struct trace *t)
 
 int64_t trace_offset(const struct trace_bounds *bounds)
 {
-    return bounds->low <= 0 && bounds->high >= 0 ? 0 : bounds->low + (bounds->high - bounds->low) / 2;
+    return bounds->low <= 0 && bounds->high >= 0 ? 0
+                                                 : bounds->low + (bounds->high - bounds->low) / 2;
 }
 
 static void narrow(struct trace_bounds *bounds, int64_t low, int64_t high)
@@ -58,7 +60,8 @@ static int64_t device_time(cl_event event, cl_profiling_info what)
     return (int64_t)ns;
 }
 
-/* Host clock minus the device's, by reads of one byte: before the call <= queued, end <= after the wait. */
+/* Host clock minus the device's, by reads of one byte: before the call <= queued, end <= after the
+ * wait. */
 static void compare_device(struct trace *t, int k)
 {
     struct buffer small;
@@ -72,14 +75,16 @@ static void compare_device(struct trace *t, int k)
         buffer_read_begin(t->dev, t->dev->compute, &small, 0, 1, &byte, 0, NULL, &event);
         check_cl(clWaitForEvents(1, &event));
         int64_t after = now();
-        narrow(&t->device[k], before - device_time(event, CL_PROFILING_COMMAND_QUEUED), after - device_time(event, CL_PROFILING_COMMAND_END));
+        narrow(&t->device[k], before - device_time(event, CL_PROFILING_COMMAND_QUEUED),
+            after - device_time(event, CL_PROFILING_COMMAND_END));
         check_cl(clReleaseEvent(event));
     }
     t->device_at[k] = now();
     buffer_free(t->dev, &small);
 }
 
-/* Clock of rank 0 minus the own. Nobody leaves a gather before all have entered: entry of rank 0 <= own exit, own entry <= exit of rank 0. */
+/* Clock of rank 0 minus the own. Nobody leaves a gather before all have entered: entry of rank 0 <=
+ * own exit, own entry <= exit of rank 0. */
 static void compare_ranks(struct trace *t)
 {
     size_t n = (size_t)t->comm->n_rank;
@@ -99,12 +104,15 @@ static void compare_ranks(struct trace *t)
 /* Times of the commands, whose events are done, on the host's clock. */
 static void settle(struct trace *t)
 {
-    int64_t offset = trace_offset(&t->device[0]), change = trace_offset(&t->device[1]) - offset, length = t->device_at[1] - t->device_at[0];
+    int64_t offset = trace_offset(&t->device[0]), change = trace_offset(&t->device[1]) - offset,
+            length = t->device_at[1] - t->device_at[0];
     for (int64_t i = 0; i < t->n_span; i++) {
         struct trace_span *span = &t->span[i];
         if (!span->event) continue;
-        int64_t begin = device_time(span->event, CL_PROFILING_COMMAND_START), end = device_time(span->event, CL_PROFILING_COMMAND_END);
-        double passed = length > 0 ? (double)(begin + offset - t->device_at[0]) / (double)length : 0;
+        int64_t begin = device_time(span->event, CL_PROFILING_COMMAND_START),
+                end = device_time(span->event, CL_PROFILING_COMMAND_END);
+        double passed =
+            length > 0 ? (double)(begin + offset - t->device_at[0]) / (double)length : 0;
         int64_t shift = offset + (int64_t)((double)change * passed);
         span->begin = begin + shift;
         span->end = end + shift;
@@ -135,7 +143,9 @@ void trace_step(struct trace *t, int64_t step)
         t->is_done = true;
     }
     if (step < 0 && !t->is_open)
-        fail_warn("--trace: the run ended before step %lld, from which on it was to be traced: no trace.json", (long long)t->first);
+        fail_warn("--trace: the run ended before step %lld, from which on it was to be traced: no "
+                  "trace.json",
+            (long long)t->first);
 }
 
 static struct trace_span *add(struct trace *t, enum trace_lane lane, const char *name)
@@ -157,7 +167,8 @@ cl_event *trace_own_event(struct trace *t)
     return &t->own;
 }
 
-void trace_add_command(struct trace *t, cl_command_queue queue, const char *name, size_t size, cl_event *event)
+void trace_add_command(
+    struct trace *t, cl_command_queue queue, const char *name, size_t size, cl_event *event)
 {
     struct trace_span *span = add(t, queue == t->dev->copy ? TRACE_COPY : TRACE_COMPUTE, name);
     if (span) {
@@ -190,7 +201,8 @@ void trace_add_messages(struct trace *t, int n, const int *rank, bool is_sent)
     for (int k = 0; k < n; k++) {
         struct trace_span *span = add(t, is_sent ? TRACE_SENT : TRACE_ARRIVED, "message");
         if (!span) continue;
-        span->begin = span->end = is_sent ? t->lap[0] + 1 : t->lap[1] - 1; /* within the lap, or readers take another one */
+        /* within the lap, or readers take another one */
+        span->begin = span->end = is_sent ? t->lap[0] + 1 : t->lap[1] - 1;
         span->size = t->n_exchange[is_sent];
         span->rank = rank[k];
     }

@@ -4,7 +4,14 @@
 
 #include "trace.h"
 
-enum trace_lane { TRACE_HOST, TRACE_COMPUTE, TRACE_COPY, TRACE_LANES, TRACE_SENT = TRACE_LANES, TRACE_ARRIVED };
+enum trace_lane {
+    TRACE_HOST,
+    TRACE_COMPUTE,
+    TRACE_COPY,
+    TRACE_LANES,
+    TRACE_SENT = TRACE_LANES,
+    TRACE_ARRIVED
+};
 
 struct trace_span {
     char name[32];

@@ -16,7 +16,8 @@ struct lattice_break {
     struct buffer fresh, released;
 };
 
-/* Shares of the links' energy that are released at the step's start and at its end (kernels/lattice/link_release.cl). */
+/* Shares of the links' energy that are released at the step's start and at its end
+ * (kernels/lattice/link_release.cl). */
 static double share_before(const struct lattice *l)
 {
     return l->scheme->ends_with_kick ? l->scheme->op[0].end : 0;
@@ -30,7 +31,8 @@ static void create_release(struct lattice_break *b)
     buffer_init(&b->fresh, "lattice fresh breaks");
     buffer_init(&b->released, "lattice released");
     if (!l->features.energy) return;
-    char *text = lattice_features_options(&l->features, l->layout), *options = fail_format("%s -DWITH_SUMS=1", text);
+    char *text = lattice_features_options(&l->features, l->layout),
+         *options = fail_format("%s -DWITH_SUMS=1", text);
     b->program_release = program_build(l->dev, l->comm, "release", options, source);
     free(text);
     free(options);
@@ -120,7 +122,8 @@ const char *lattice_break_name(int mode)
     return name[mode];
 }
 
-static void read_ints(const struct lattice *l, const struct buffer *buffer, int32_t mask, int32_t *value)
+static void read_ints(
+    const struct lattice *l, const struct buffer *buffer, int32_t mask, int32_t *value)
 {
     size_t bytes = (size_t)l->layout->plane * sizeof(int32_t);
     int32_t *raw = fail_alloc(bytes);
@@ -141,7 +144,8 @@ static void write_ints(struct lattice *l, struct buffer *buffer, int32_t mask, c
     size_t bytes = (size_t)l->layout->plane * sizeof(int32_t);
     int32_t *raw = fail_alloc(bytes);
     buffer_read(l->dev, buffer, 0, bytes, raw);
-    for (int64_t k = 0; k < l->layout->n_owned; k++) raw[l->layout->index[k]] = (raw[l->layout->index[k]] & ~mask) | (value[k] & mask);
+    for (int64_t k = 0; k < l->layout->n_owned; k++)
+        raw[l->layout->index[k]] = (raw[l->layout->index[k]] & ~mask) | (value[k] & mask);
     buffer_write(l->dev, buffer, 0, bytes, raw);
     free(raw);
 }
@@ -160,7 +164,8 @@ void lattice_break_read_release(const struct lattice_break *b, int32_t *fresh, d
     free(plane);
 }
 
-void lattice_break_write_release(struct lattice_break *b, const int32_t *fresh, const double *released)
+void lattice_break_write_release(
+    struct lattice_break *b, const int32_t *fresh, const double *released)
 {
     write_ints(b->l, &b->fresh, -1, fresh);
     lattice_write_plane(b->l, &b->released, false, 0, released, 1);

@@ -11,7 +11,8 @@
 #include "lattice_parts.h"
 #include "kernels/lattice/loads.h"
 
-void lattice_fault(const struct scene *scene, struct scene_errors *errors, int line, int column, const char *format, ...)
+void lattice_fault(const struct scene *scene, struct scene_errors *errors, int line, int column,
+    const char *format, ...)
 {
     char text[1024];
     va_list args;
@@ -32,19 +33,23 @@ static int by_key(const void *a, const void *b)
 static void merge(struct lattice_list *list)
 {
     bool sorted = true;
-    for (size_t k = 1; k < list->n && sorted; k++) sorted = list->cell[k - 1].key < list->cell[k].key;
+    for (size_t k = 1; k < list->n && sorted; k++)
+        sorted = list->cell[k - 1].key < list->cell[k].key;
     if (sorted) return;
     qsort(list->cell, list->n, sizeof *list->cell, by_key);
     size_t n = 0;
     for (size_t k = 0; k < list->n; k++)
-        if (k + 1 == list->n || list->cell[k].key != list->cell[k + 1].key) list->cell[n++] = list->cell[k];
+        if (k + 1 == list->n || list->cell[k].key != list->cell[k + 1].key)
+            list->cell[n++] = list->cell[k];
     list->n = n;
 }
 
 static int kind_of(struct lattice_cells *cells, int material, int grid)
 {
     int k = 0;
-    while (k < cells->n_kind && (cells->kind[k].material != material || cells->kind[k].grid != grid)) k++;
+    while (
+        k < cells->n_kind && (cells->kind[k].material != material || cells->kind[k].grid != grid))
+        k++;
     if (k < cells->n_kind) return k;
     cells->kind = fail_realloc(cells->kind, (size_t)(k + 1) * sizeof *cells->kind);
     cells->kind[k] = (struct lattice_kind){material, grid};
@@ -56,17 +61,21 @@ static void *grow(void *old, size_t n, size_t bytes)
     return fail_realloc(old, n * bytes);
 }
 
-static void append(struct lattice_cells *cells, const struct scene *scene, int grid, const struct lattice_list *list)
+static void append(struct lattice_cells *cells, const struct scene *scene, int grid,
+    const struct lattice_list *list)
 {
     size_t n = (size_t)cells->n + list->n;
     cells->at = grow(cells->at, n, sizeof *cells->at);
     cells->kind_of = grow(cells->kind_of, n, sizeof *cells->kind_of);
     cells->body = grow(cells->body, n, sizeof *cells->body);
-    int *kind = fail_alloc((size_t)scene->n_body * sizeof *kind); /* of each body, 0: not yet known */
+    /* of each body, 0: not yet known */
+    int *kind = fail_alloc((size_t)scene->n_body * sizeof *kind);
     for (size_t k = 0; k < list->n; k++, cells->n++) {
         int b = list->cell[k].body;
         if (!kind[b]) kind[b] = kind_of(cells, scene->body[b].material, grid) + 1;
-        for (int a = 0; a < 3; a++) cells->at[cells->n][a] = (int32_t)(list->cell[k].key >> (LATTICE_BITS * a) & LATTICE_MOST);
+        for (int a = 0; a < 3; a++)
+            cells->at[cells->n][a] =
+                (int32_t)(list->cell[k].key >> (LATTICE_BITS * a) & LATTICE_MOST);
         cells->kind_of[cells->n] = (uint8_t)(kind[b] - 1);
         cells->body[cells->n] = (int16_t)b;
         cells->n_of_body[b]++;
@@ -74,16 +83,21 @@ static void append(struct lattice_cells *cells, const struct scene *scene, int g
     free(kind);
 }
 
-static void check_counts(const struct scene *scene, const struct lattice_cells *cells, const struct lattice_cut *cut, struct scene_errors *errors)
+static void check_counts(const struct scene *scene, const struct lattice_cells *cells,
+    const struct lattice_cut *cut, struct scene_errors *errors)
 {
     for (int b = 0; b < scene->n_body; b++) {
         const struct body *body = &scene->body[b];
         if (cells->n_of_body[b] > 0) continue;
-        lattice_fault(scene, errors, body->line, body->column, "bodies[%d]: '%s' has no cell: %s", b, body->name,
+        lattice_fault(scene, errors, body->line, body->column, "bodies[%d]: '%s' has no cell: %s",
+            b, body->name,
             cut[b].n > 0 ? "later bodies have taken them all" : "no centre of one is inside");
     }
-    if (cells->n_kind > UINT8_MAX) scene_errors_add(errors, "%s: bodies: more than 255 kinds of material and grid", scene->path);
-    if (cells->n > INT32_MAX / 2) scene_errors_add(errors, "%s: bodies: more than %d cells", scene->path, INT32_MAX / 2);
+    if (cells->n_kind > UINT8_MAX)
+        scene_errors_add(
+            errors, "%s: bodies: more than 255 kinds of material and grid", scene->path);
+    if (cells->n > INT32_MAX / 2)
+        scene_errors_add(errors, "%s: bodies: more than %d cells", scene->path, INT32_MAX / 2);
 }
 
 static uint64_t key_of(const int32_t at[3])
@@ -91,7 +105,8 @@ static uint64_t key_of(const int32_t at[3])
     return ((uint64_t)at[2] << LATTICE_BITS | (uint64_t)at[1]) << LATTICE_BITS | (uint64_t)at[0];
 }
 
-/* Both cells of a link are met in ascending order, so two marks that only move forwards find all of them. */
+/* Both cells of a link are met in ascending order, so two marks that only move forwards find all of
+ * them. */
 void lattice_cells_upper(const struct lattice_cells *cells, int axis, int32_t *upper)
 {
     uint64_t stride = (uint64_t)1 << (LATTICE_BITS * axis);
@@ -104,7 +119,9 @@ void lattice_cells_upper(const struct lattice_cells *cells, int axis, int32_t *u
             int at_grid = cells->kind[cells->kind_of[j]].grid;
             if (at_grid > grid || (at_grid == grid && key_of(cells->at[j]) >= want)) break;
         }
-        if (j < cells->n && cells->kind[cells->kind_of[j]].grid == grid && key_of(cells->at[j]) == want) upper[i] = (int32_t)j;
+        if (j < cells->n && cells->kind[cells->kind_of[j]].grid == grid &&
+            key_of(cells->at[j]) == want)
+            upper[i] = (int32_t)j;
     }
 }
 
@@ -129,7 +146,8 @@ void lattice_cells_centre(const struct lattice_cells *cells, int64_t i, double x
     for (int a = 0; a < 3; a++) x[a] = grid->origin[a] + (cells->at[i][a] + 0.5) * grid->h;
 }
 
-/* v0 + w0 x (x - x0) about the mean centre x0 of each body's cells; what is fixed stands, what is prescribed starts as prescribed. */
+/* v0 + w0 x (x - x0) about the mean centre x0 of each body's cells; what is fixed stands, what is
+ * prescribed starts as prescribed. */
 static void set_velocities(const struct scene *scene, struct lattice_cells *cells)
 {
     double(*middle)[3] = fail_alloc((size_t)scene->n_body * sizeof *middle), x[3];
@@ -137,14 +155,16 @@ static void set_velocities(const struct scene *scene, struct lattice_cells *cell
     bool moves = false;
     for (int64_t i = 0; i < cells->n; i++) {
         lattice_cells_centre(cells, i, x);
-        for (int a = 0; a < 3; a++) middle[cells->body[i]][a] += x[a] / (double)cells->n_of_body[cells->body[i]];
+        for (int a = 0; a < 3; a++)
+            middle[cells->body[i]][a] += x[a] / (double)cells->n_of_body[cells->body[i]];
     }
     lattice_loads_at(cells->loads, scene, 0, 0, 0, rows);
     cells->v = fail_alloc((size_t)cells->n * sizeof *cells->v);
     cells->w = fail_alloc((size_t)cells->n * sizeof *cells->w);
     for (int64_t i = 0; i < cells->n; i++) {
         const struct body *body = &scene->body[cells->body[i]];
-        const double *w = body->angular_velocity, *given = rows + (int64_t)cells->row[i] * LOAD_WIDTH + LOAD_VELOCITY;
+        const double *w = body->angular_velocity,
+                     *given = rows + (int64_t)cells->row[i] * LOAD_WIDTH + LOAD_VELOCITY;
         lattice_cells_centre(cells, i, x);
         for (int a = 0; a < 3; a++) x[a] -= middle[cells->body[i]][a];
         for (int a = 0; a < 3; a++) {
@@ -152,7 +172,8 @@ static void set_velocities(const struct scene *scene, struct lattice_cells *cell
             double v = body->velocity[a] + (w[b] * x[c] - w[c] * x[b]);
             cells->v[i][a] = cells->bits[i] & CELL_FIX(a) ? given[a] : v;
             cells->w[i][a] = cells->bits[i] & CELL_FIX(3 + a) ? given[3 + a] : w[a];
-            moves = moves || cells->v[i][a] < 0 || cells->v[i][a] > 0 || cells->w[i][a] < 0 || cells->w[i][a] > 0;
+            moves = moves || cells->v[i][a] < 0 || cells->v[i][a] > 0 || cells->w[i][a] < 0 ||
+                    cells->w[i][a] > 0;
         }
     }
     free(middle);
@@ -170,7 +191,8 @@ struct lattice_cells *lattice_cells_create(const struct scene *scene, struct sce
     struct lattice_cut *cut = fail_alloc((size_t)scene->n_body * sizeof *cut);
     struct lattice_list list = {0};
     cells->n_of_body = fail_alloc((size_t)scene->n_body * sizeof *cells->n_of_body);
-    if (scene->n_body > INT16_MAX) scene_errors_add(errors, "%s: bodies: more than %d", scene->path, INT16_MAX);
+    if (scene->n_body > INT16_MAX)
+        scene_errors_add(errors, "%s: bodies: more than %d", scene->path, INT16_MAX);
     for (int b = 0; b < scene->n_body; b++) lattice_cut_open(&cut[b], scene, b, errors);
     if (errors->n == before) lattice_cut_place(cut, scene, cells, errors);
     for (int g = 0; g < cells->n_grid && errors->n == before; g++) {

@@ -1,10 +1,11 @@
-/* Bodies of a scene cut into cells, with links, what holds and what loads each. A function of the scene alone: every rank gets the same cells, to the
- * bit. Knows no device and no MPI.
+/* Bodies of a scene cut into cells, with links, what holds and what loads each. A function of the
+ * scene alone: every rank gets the same cells, to the bit. Knows no device and no MPI.
  *
- * A body is cut on a grid of edge `cell` whose origin is the low corner of the body's own bounding box. Bodies whose grids agree (same edge, offset a
- * whole number of cells to 1e-9 of it) share one, and there neighbouring cells are linked, of whichever body they are. A cell is there if its centre
- * is inside the shape, or on it to 1e-9 of the edge, and not so in `minus`; of two bodies the later one has it. A link is there unless its middle is
- * in a crack of one of its two bodies.
+ * A body is cut on a grid of edge `cell` whose origin is the low corner of the body's own bounding
+ * box. Bodies whose grids agree (same edge, offset a whole number of cells to 1e-9 of it) share
+ * one, and there neighbouring cells are linked, of whichever body they are. A cell is there if its
+ * centre is inside the shape, or on it to 1e-9 of the edge, and not so in `minus`; of two bodies
+ * the later one has it. A link is there unless its middle is in a crack of one of its two bodies.
  * Centre of a cell: origin + (at + 1/2) h. */
 #ifndef DEMOCLES_LATTICE_CELLS_H
 #define DEMOCLES_LATTICE_CELLS_H
@@ -16,7 +17,8 @@
 
 struct lattice_loads;
 
-/* Bits of a cell: six links as LINK_BIT of kernels/lattice/law_volume.h, then fixed DOF x, y, z, rx, ry, rz. */
+/* Bits of a cell: six links as LINK_BIT of kernels/lattice/law_volume.h, then fixed DOF x, y, z,
+ * rx, ry, rz. */
 enum { CELL_LINKS = 63, CELL_FIXED = 63 << 6 };
 #define CELL_LINK(face) (1 << (face))
 #define CELL_FIX(dof) (64 << (dof))
@@ -38,19 +40,22 @@ struct lattice_cells {
     struct lattice_grid *grid;
     int n_grid;
     struct lattice_kind *kind;
-    int n_kind;         /* at most 255 */
-    int32_t (*at)[3];   /* [n] place on its grid, from 0 */
-    uint8_t *kind_of;   /* [n] */
-    int16_t *body;      /* [n] index into scene.body */
-    uint16_t *bits;     /* [n] links and fixed DOF */
-    int32_t *row;       /* [n] row of loads; 0: no load */
-    double (*v)[3];     /* [n] velocity at time 0 [m/s]: 0 of a fixed DOF, as prescribed of a prescribed one; NULL: all zero */
+    int n_kind;       /* at most 255 */
+    int32_t (*at)[3]; /* [n] place on its grid, from 0 */
+    uint8_t *kind_of; /* [n] */
+    int16_t *body;    /* [n] index into scene.body */
+    uint16_t *bits;   /* [n] links and fixed DOF */
+    int32_t *row;     /* [n] row of loads; 0: no load */
+    /* [n] velocity at time 0 [m/s]: 0 of a fixed DOF, as prescribed of a prescribed one; NULL: all
+     * zero */
+    double (*v)[3];
     double (*w)[3];     /* [n] likewise, angular [rad/s]; NULL together with v */
     int64_t *n_of_body; /* [scene.n_body] cells of each */
     struct lattice_loads *loads;
 };
 
-/* NULL with messages in `errors`, each with the place in the scene file, where a body or boundary cannot be. Not collective. */
+/* NULL with messages in `errors`, each with the place in the scene file, where a body or boundary
+ * cannot be. Not collective. */
 struct lattice_cells *lattice_cells_create(const struct scene *scene, struct scene_errors *errors);
 void lattice_cells_free(struct lattice_cells *cells);
 

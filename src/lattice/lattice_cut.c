@@ -8,9 +8,11 @@
 
 enum { MOST_CELLS = INT32_MAX / 2 };
 
-static void fault_at(const struct lattice_cut *cut, const struct scene *scene, struct scene_errors *errors, const char *key, const char *text)
+static void fault_at(const struct lattice_cut *cut, const struct scene *scene,
+    struct scene_errors *errors, const char *key, const char *text)
 {
-    lattice_fault(scene, errors, cut->body->line, cut->body->column, "bodies[%d].%s: %s", cut->index, key, text);
+    lattice_fault(scene, errors, cut->body->line, cut->body->column, "bodies[%d].%s: %s",
+        cut->index, key, text);
 }
 
 /* Cells along each axis: those with their centre inside the bounding box. */
@@ -18,16 +20,19 @@ static bool count(struct lattice_cut *cut, const struct scene *scene, struct sce
 {
     double h = cut->body->cell, all = 1;
     for (int a = 0; a < 3; a++) {
-        double length = cut->shape.high[a] - cut->shape.low[a], n = floor(length / h + 0.5 + LATTICE_SLACK);
+        double length = cut->shape.high[a] - cut->shape.low[a],
+               n = floor(length / h + 0.5 + LATTICE_SLACK);
         if (length < h * (1 - LATTICE_SLACK)) {
-            char *text = fail_format("%g m, and '%s' has only %.4g m in %c: thinner than a cell", h, cut->body->name, length, "xyz"[a]);
+            char *text = fail_format("%g m, and '%s' has only %.4g m in %c: thinner than a cell", h,
+                cut->body->name, length, "xyz"[a]);
             fault_at(cut, scene, errors, "cell", text);
             free(text);
             return false;
         }
         all *= n;
         if (n > LATTICE_MOST || all > MOST_CELLS) {
-            char *text = fail_format("%g m cuts the bounding box of '%s' into too many cells", h, cut->body->name);
+            char *text = fail_format(
+                "%g m cuts the bounding box of '%s' into too many cells", h, cut->body->name);
             fault_at(cut, scene, errors, "cell", text);
             free(text);
             return false;
@@ -37,7 +42,8 @@ static bool count(struct lattice_cut *cut, const struct scene *scene, struct sce
     return true;
 }
 
-bool lattice_cut_open(struct lattice_cut *cut, const struct scene *scene, int index, struct scene_errors *errors)
+bool lattice_cut_open(
+    struct lattice_cut *cut, const struct scene *scene, int index, struct scene_errors *errors)
 {
     const struct body *body = &scene->body[index];
     *cut = (struct lattice_cut){.body = body, .index = index};
@@ -48,7 +54,9 @@ bool lattice_cut_open(struct lattice_cut *cut, const struct scene *scene, int in
     free(text);
     for (int m = 0; m < body->n_minus; m++) {
         text = region_open(&cut->minus[m], &body->minus[m]);
-        if (text) lattice_fault(scene, errors, body->line, body->column, "bodies[%d].minus[%d]: %s", index, m, text);
+        if (text)
+            lattice_fault(scene, errors, body->line, body->column, "bodies[%d].minus[%d]: %s",
+                index, m, text);
         good = good && !text;
         free(text);
     }
@@ -69,14 +77,17 @@ static bool agrees(const struct lattice_cut *cut, const struct lattice_cut *firs
     if (cut->body->cell < h || cut->body->cell > h) return false;
     for (int a = 0; a < 3; a++) {
         double offset = (cut->shape.low[a] - first->shape.low[a]) / h, whole = nearbyint(offset);
-        if (!(fabs(whole) < 2.0 * LATTICE_MOST) || fabs(offset - whole) > LATTICE_SLACK) return false;
+        if (!(fabs(whole) < 2.0 * LATTICE_MOST) || fabs(offset - whole) > LATTICE_SLACK)
+            return false;
         shift[a] = (int64_t)whole;
     }
     return true;
 }
 
-/* Shifts count from the lowest cell of the grid; its corner is that of the body that reaches lowest. */
-static bool settle(struct lattice_cut *cut, const struct scene *scene, int g, struct lattice_grid *grid, struct scene_errors *errors)
+/* Shifts count from the lowest cell of the grid; its corner is that of the body that reaches
+ * lowest. */
+static bool settle(struct lattice_cut *cut, const struct scene *scene, int g,
+    struct lattice_grid *grid, struct scene_errors *errors)
 {
     for (int a = 0; a < 3; a++) {
         int64_t low = INT64_MAX;
@@ -89,14 +100,16 @@ static bool settle(struct lattice_cut *cut, const struct scene *scene, int g, st
             if (cut[b].grid != g) continue;
             cut[b].shift[a] -= low;
             if (cut[b].shift[a] + cut[b].size[a] <= LATTICE_MOST) continue;
-            fault_at(&cut[b], scene, errors, "cell", "the grid that this body shares with others has too many cells along an edge");
+            fault_at(&cut[b], scene, errors, "cell",
+                "the grid that this body shares with others has too many cells along an edge");
             return false;
         }
     }
     return true;
 }
 
-bool lattice_cut_place(struct lattice_cut *cut, const struct scene *scene, struct lattice_cells *cells, struct scene_errors *errors)
+bool lattice_cut_place(struct lattice_cut *cut, const struct scene *scene,
+    struct lattice_cells *cells, struct scene_errors *errors)
 {
     int *first = fail_alloc((size_t)scene->n_body * sizeof *first); /* body of each grid */
     bool good = true;
@@ -110,12 +123,14 @@ bool lattice_cut_place(struct lattice_cut *cut, const struct scene *scene, struc
         first[g] = b;
         cells->grid[cells->n_grid++].h = cut[b].body->cell;
     }
-    for (int g = 0; g < cells->n_grid; g++) good = settle(cut, scene, g, &cells->grid[g], errors) && good;
+    for (int g = 0; g < cells->n_grid; g++)
+        good = settle(cut, scene, g, &cells->grid[g], errors) && good;
     free(first);
     return good;
 }
 
-/* There or not, for the whole bounding box: [z][y][x]. Each column is one walk through the surfaces. */
+/* There or not, for the whole bounding box: [z][y][x]. Each column is one walk through the
+ * surfaces. */
 static uint8_t *fill(const struct lattice_cut *cut)
 {
     double h = cut->body->cell, inset = -LATTICE_SLACK * h;
@@ -151,8 +166,10 @@ void lattice_cut_append(struct lattice_cut *cut, struct lattice_list *list)
                     list->room = list->room ? 2 * list->room : 4096;
                     list->cell = fail_realloc(list->cell, list->room * sizeof *list->cell);
                 }
-                uint64_t x = (uint64_t)(i + cut->shift[0]), y = (uint64_t)(j + cut->shift[1]), z = (uint64_t)(k + cut->shift[2]);
-                list->cell[list->n++] = (struct lattice_cell){(z << LATTICE_BITS | y) << LATTICE_BITS | x, (int16_t)cut->index};
+                uint64_t x = (uint64_t)(i + cut->shift[0]), y = (uint64_t)(j + cut->shift[1]),
+                         z = (uint64_t)(k + cut->shift[2]);
+                list->cell[list->n++] = (struct lattice_cell){
+                    (z << LATTICE_BITS | y) << LATTICE_BITS | x, (int16_t)cut->index};
                 cut->n++;
             }
     free(there);

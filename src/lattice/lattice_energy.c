@@ -16,8 +16,9 @@ struct lattice_account {
     double work, links, mass; /* when it was opened [J] */
 };
 
-/* Where the centre of each run's first cell is, there or not, and the edge of its cells: [n_run][4] [m]. From the grid alone, so the same on any
- * rank; runs without own cells stay 0. The caller frees. */
+/* Where the centre of each run's first cell is, there or not, and the edge of its cells: [n_run][4]
+ * [m]. From the grid alone, so the same on any rank; runs without own cells stay 0. The caller
+ * frees. */
 static double *places(const struct lattice *l, const struct lattice_cells *cells)
 {
     const struct lattice_layout *c = l->layout;
@@ -36,13 +37,15 @@ static double *places(const struct lattice *l, const struct lattice_cells *cells
 
 struct lattice_account *lattice_energy_create(struct lattice *l, const struct lattice_cells *cells)
 {
-    static const char *const source[] = {"link_energy.cl", NULL}, *const gravity[] = {"gravity_x", "gravity_y", "gravity_z"};
+    static const char *const source[] = {"link_energy.cl", NULL}, *const gravity[] = {"gravity_x",
+                                                                      "gravity_y", "gravity_z"};
     struct lattice_account *a = fail_alloc(sizeof *a);
     a->l = l;
     buffer_init(&a->place, "lattice places");
     buffer_init(&a->partial, "lattice sums");
     if (!l->dev->fp64) return a;
-    char *text = lattice_features_options(&l->features, l->layout), *options = fail_format("%s -DWITH_SUMS=1", text);
+    char *text = lattice_features_options(&l->features, l->layout),
+         *options = fail_format("%s -DWITH_SUMS=1", text);
     a->program = program_build(l->dev, l->comm, "energy", options, source);
     free(text);
     free(options);
@@ -51,7 +54,8 @@ struct lattice_account *lattice_energy_create(struct lattice *l, const struct la
     buffer_reserve(l->dev, &a->place, bytes);
     buffer_write(l->dev, &a->place, 0, bytes, place);
     free(place);
-    buffer_reserve(l->dev, &a->partial, (size_t)SUMS_GROUPS * ACCOUNT_WIDTH * SUMS_WIDTH * sizeof(int64_t));
+    buffer_reserve(
+        l->dev, &a->partial, (size_t)SUMS_GROUPS * ACCOUNT_WIDTH * SUMS_WIDTH * sizeof(int64_t));
     a->launch = lattice_launch(l, a->program, "link_energies", &l->force_list);
     launch_set_batch(a->launch, SUMS_GROUP);
     launch_bind_buffer(a->launch, "place", &a->place);
@@ -104,15 +108,17 @@ void lattice_energy_now(struct lattice_account *a, struct lattice_energy *out)
     for (int k = 0; k < ACCOUNT_WIDTH; k++) sum[k].bad += !a->program;
     for (int k = ACCOUNT_WORK; k <= ACCOUNT_RELEASED; k++) sum[k].bad += !a->l->features.energy;
     integer_sums_all(a->l->comm, sum, ACCOUNT_WIDTH, v);
-    *out = (struct lattice_energy){v[ACCOUNT_KINETIC], v[ACCOUNT_ROTATIONAL], v[ACCOUNT_GRAVITY], v[ACCOUNT_ELASTIC], v[ACCOUNT_WORK] - a->work,
-        v[ACCOUNT_LINKS] - a->links, v[ACCOUNT_MASS] - a->mass, v[ACCOUNT_RELEASED],
+    *out = (struct lattice_energy){v[ACCOUNT_KINETIC], v[ACCOUNT_ROTATIONAL], v[ACCOUNT_GRAVITY],
+        v[ACCOUNT_ELASTIC], v[ACCOUNT_WORK] - a->work, v[ACCOUNT_LINKS] - a->links,
+        v[ACCOUNT_MASS] - a->mass, v[ACCOUNT_RELEASED],
         {v[ACCOUNT_MOMENTUM], v[ACCOUNT_MOMENTUM + 1], v[ACCOUNT_MOMENTUM + 2]},
         {v[ACCOUNT_ANGULAR], v[ACCOUNT_ANGULAR + 1], v[ACCOUNT_ANGULAR + 2]}};
 }
 
 static double account(const struct lattice_energy *e)
 {
-    return e->kinetic + e->rotational + e->gravity + e->elastic + e->links + e->mass + e->released - e->work;
+    return e->kinetic + e->rotational + e->gravity + e->elastic + e->links + e->mass + e->released -
+           e->work;
 }
 
 double lattice_energy_balance(const struct lattice_energy *start, const struct lattice_energy *now)

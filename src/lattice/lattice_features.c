@@ -6,17 +6,20 @@
 #include "kernels/lattice/lattice_words.h"
 #include "comm/fail.h"
 
-struct lattice_features lattice_features_of(const struct lattice_cells *cells, const struct lattice_options *o)
+struct lattice_features lattice_features_of(
+    const struct lattice_cells *cells, const struct lattice_options *o)
 {
-    struct lattice_features f = {.real_is_float = o->real_is_float, .position_is_float = o->position_is_float, .turn = o->turn};
+    struct lattice_features f = {.real_is_float = o->real_is_float,
+        .position_is_float = o->position_is_float,
+        .turn = o->turn};
     for (int i = 0; i < cells->n_kind; i++) {
         int m = cells->kind[i].material;
         f.volume |= fabs(link_constants_lambda(o->set, o->material[m])) > 0;
         f.link_damping |= o->material[m].damping > 0;
         f.mass_damping |= o->alpha && o->alpha[m] > 0;
         for (int j = 0; j < cells->n_kind; j++) {
-            struct link_stiffness k =
-                link_constants_between(o->set, o->material[m], o->material[cells->kind[j].material], cells->grid[cells->kind[i].grid].h);
+            struct link_stiffness k = link_constants_between(o->set, o->material[m],
+                o->material[cells->kind[j].material], cells->grid[cells->kind[i].grid].h);
             f.shear_apart |= link_constants_shear_apart(k);
             f.twist_apart |= link_constants_twist_apart(k);
         }
@@ -38,8 +41,9 @@ struct lattice_features lattice_features_of(const struct lattice_cells *cells, c
 static const struct {
     const char *name;
     size_t at;
-} feature_table[] = {FEATURE(turn), FEATURE(volume), FEATURE(shear_apart), FEATURE(twist_apart), FEATURE(link_damping), FEATURE(mass_damping),
-    FEATURE(fix), FEATURE(loads), FEATURE(gravity), FEATURE(kinds), FEATURE(rk), FEATURE(nystrom), FEATURE(energy), FEATURE(breakage), {NULL, 0}};
+} feature_table[] = {FEATURE(turn), FEATURE(volume), FEATURE(shear_apart), FEATURE(twist_apart),
+    FEATURE(link_damping), FEATURE(mass_damping), FEATURE(fix), FEATURE(loads), FEATURE(gravity),
+    FEATURE(kinds), FEATURE(rk), FEATURE(nystrom), FEATURE(energy), FEATURE(breakage), {NULL, 0}};
 
 const char *lattice_features_name(int i)
 {
@@ -51,13 +55,19 @@ bool lattice_features_value(const struct lattice_features *features, int i)
     return *(const bool *)((const char *)features + feature_table[i].at);
 }
 
-char *lattice_features_options(const struct lattice_features *f, const struct lattice_layout *layout)
+char *lattice_features_options(
+    const struct lattice_features *f, const struct lattice_layout *layout)
 {
-    return fail_format("-DREAL_IS_FLOAT=%d -DPOSITION_IS_FLOAT=%d -DWITH_TURN=%d -DWITH_VOLUME=%d -DWITH_SHEAR_APART=%d -DWITH_TWIST_APART=%d "
-                       "-DWITH_LINK_DAMPING=%d -DWITH_MASS_DAMPING=%d -DWITH_FIX=%d -DWITH_LOADS=%d -DWITH_GRAVITY=%d -DWITH_KINDS=%d -DWITH_RK=%d "
-                       "-DWITH_NYSTROM=%d -DWITH_ENERGY=%d -DWITH_BREAK=%d -DRUN_AXIS=%d -DBATCH=%d -DBATCH_WIDTH=%d",
-        f->real_is_float, f->position_is_float, f->turn, f->volume, f->shear_apart, f->twist_apart, f->link_damping, f->mass_damping, f->fix,
-        f->loads, f->gravity, f->kinds, f->rk, f->nystrom, f->energy, f->breakage, layout->axis, layout->run,
+    return fail_format(
+        "-DREAL_IS_FLOAT=%d -DPOSITION_IS_FLOAT=%d -DWITH_TURN=%d -DWITH_VOLUME=%d "
+        "-DWITH_SHEAR_APART=%d -DWITH_TWIST_APART=%d "
+        "-DWITH_LINK_DAMPING=%d -DWITH_MASS_DAMPING=%d -DWITH_FIX=%d -DWITH_LOADS=%d "
+        "-DWITH_GRAVITY=%d -DWITH_KINDS=%d -DWITH_RK=%d "
+        "-DWITH_NYSTROM=%d -DWITH_ENERGY=%d -DWITH_BREAK=%d -DRUN_AXIS=%d -DBATCH=%d "
+        "-DBATCH_WIDTH=%d",
+        f->real_is_float, f->position_is_float, f->turn, f->volume, f->shear_apart, f->twist_apart,
+        f->link_damping, f->mass_damping, f->fix, f->loads, f->gravity, f->kinds, f->rk, f->nystrom,
+        f->energy, f->breakage, layout->axis, layout->run,
         f->real_is_float && f->position_is_float && layout->run % 16 == 0 ? 16 : 8);
 }
 
@@ -68,7 +78,8 @@ double *lattice_features_links(const struct lattice_cells *cells, const struct l
     for (int i = 0; i < n; i++)
         for (int j = 0; j < n; j++, row += LINK_WIDTH) {
             double h = cells->grid[cells->kind[i].grid].h;
-            struct link_stiffness k = link_constants_between(o->set, o->material[cells->kind[i].material], o->material[cells->kind[j].material], h);
+            struct link_stiffness k = link_constants_between(o->set,
+                o->material[cells->kind[i].material], o->material[cells->kind[j].material], h);
             const double value[LINK_WIDTH] = {k.kn, k.ks, k.kt, k.kb, k.r_i, k.r_j, h, k.eta};
             for (int a = 0; a < LINK_WIDTH; a++) row[a] = value[a];
         }
@@ -95,19 +106,24 @@ double *lattice_features_cells(const struct lattice_cells *cells, const struct l
     for (int i = 0; i < cells->n_kind; i++) {
         const struct link_material *m = &o->material[cells->kind[i].material];
         double h = cells->grid[cells->kind[i].grid].h;
-        const double value[CELL_WIDTH] = {1 / link_constants_mass(*m, h), 1 / link_constants_inertia(*m, h), link_constants_lambda(o->set, *m),
-            1 / (4 * link_constants_shear(*m)), 1 / (2 * h), m->damping, o->alpha ? o->alpha[cells->kind[i].material] : 0, h * h * h};
+        const double value[CELL_WIDTH] = {1 / link_constants_mass(*m, h),
+            1 / link_constants_inertia(*m, h), link_constants_lambda(o->set, *m),
+            1 / (4 * link_constants_shear(*m)), 1 / (2 * h), m->damping,
+            o->alpha ? o->alpha[cells->kind[i].material] : 0, h * h * h};
         for (int a = 0; a < CELL_WIDTH; a++) table[i * CELL_WIDTH + a] = value[a];
     }
     return table;
 }
 
 /* A kick over s [s], as kernels/lattice/lattice_work.h: with z = alpha s
- *     f = e^-z, g = (1 - f)/alpha, G = (s - g)/alpha, A = (1 - f^2)/2, C = alpha times the integral of g^2 = (s - 2 g + A/alpha)/alpha
- * G and C by their series for small z, where the differences cancel: what is left out is below 1e-16. */
+ *     f = e^-z, g = (1 - f)/alpha, G = (s - g)/alpha, A = (1 - f^2)/2, C = alpha times the integral
+ *       of g^2 = (s - 2 g + A/alpha)/alpha
+ * G and C by their series for small z, where the differences cancel: what is left out is below
+ * 1e-16. */
 static void kick(double alpha, double s, double *row)
 {
-    double z = alpha * s, g = alpha > 0 ? -expm1(-z) / alpha : s, a = alpha > 0 ? -0.5 * expm1(-2 * z) : 0, whole = 0, lost = 0;
+    double z = alpha * s, g = alpha > 0 ? -expm1(-z) / alpha : s,
+           a = alpha > 0 ? -0.5 * expm1(-2 * z) : 0, whole = 0, lost = 0;
     if (fabs(z) > 0.25) {
         whole = (s - g) / alpha;
         lost = (s - 2 * g + a / alpha) / alpha;
@@ -131,7 +147,8 @@ double *lattice_features_kicks(const struct lattice_cells *cells, const struct l
     for (int k = 0; k < t->n + 2; k++)
         for (int i = 0; i < cells->n_kind; i++) {
             const struct lattice_op *op = &t->op[k < t->n ? k : 0];
-            double alpha = o->alpha ? o->alpha[cells->kind[i].material] : 0, *row = table + (k * cells->n_kind + i) * KICK_WIDTH;
+            double alpha = o->alpha ? o->alpha[cells->kind[i].material] : 0,
+                   *row = table + (k * cells->n_kind + i) * KICK_WIDTH;
             kick(alpha, k == t->n + 1 ? 0 : op->end * o->dt, row);
             kick(alpha, k == t->n ? 0 : op->begin * o->dt, row + KICK_PART);
         }

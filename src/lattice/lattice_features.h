@@ -1,4 +1,5 @@
-/* What a lattice needs of the kernels, and the tables of constants that they read. Knows no device. */
+/* What a lattice needs of the kernels, and the tables of constants that they read. Knows no
+ * device. */
 #ifndef DEMOCLES_LATTICE_FEATURES_H
 #define DEMOCLES_LATTICE_FEATURES_H
 
@@ -7,7 +8,8 @@
 #include "lattice_layout.h"
 #include "laws/lattice_schemes.h"
 
-/* Rows of loads at time t [s], double [n_row][LOAD_WIDTH]; velocities as means over [from, to] [s], or their values if from == to. */
+/* Rows of loads at time t [s], double [n_row][LOAD_WIDTH]; velocities as means over [from, to] [s],
+ * or their values if from == to. */
 typedef void lattice_rows_at(void *context, double t, double from, double to, double *rows);
 
 struct lattice_options {
@@ -18,8 +20,10 @@ struct lattice_options {
     bool real_is_float, position_is_float;
     double gravity[3]; /* [m/s2] */
     enum link_set set;
-    const struct link_material *material; /* [n_material], with damping of links; borrowed for the lattice's life */
-    const double *alpha;                  /* [n_material] mass-proportional damping [1/s]; NULL: none */
+    /* [n_material], with damping of links; borrowed for the lattice's life */
+    const struct link_material *material;
+    /* [n_material] mass-proportional damping [1/s]; NULL: none */
+    const double *alpha;
     int n_material;
     const struct link_strength *strength; /* [n_kind of the cells]; NULL: nothing breaks */
     int n_row;                            /* rows of loads; up to 1: no loads */
@@ -27,7 +31,8 @@ struct lattice_options {
     void *context;
     struct lattice_lay run; /* length 0: what suits the body */
     struct scene_partition partition;
-    const int64_t *share; /* [n_rank] of the work that each rank is to have (partition.h); NULL: equal ones */
+    /* [n_rank] of the work that each rank is to have (partition.h); NULL: equal ones */
+    const int64_t *share;
 };
 
 struct lattice_features {
@@ -43,18 +48,22 @@ struct lattice_features {
     bool breakage;
 };
 
-struct lattice_features lattice_features_of(const struct lattice_cells *cells, const struct lattice_options *o);
+struct lattice_features lattice_features_of(
+    const struct lattice_cells *cells, const struct lattice_options *o);
 /* Names and values, for run.json and `check`: i = 0, 1, ... until the name is NULL. */
 const char *lattice_features_name(int i);
 bool lattice_features_value(const struct lattice_features *features, int i);
 /* Build options; the caller frees. */
-char *lattice_features_options(const struct lattice_features *f, const struct lattice_layout *layout);
-/* Tables of kernels/lattice/lattice_state.h; the caller frees: links [n_kind][n_kind][LINK_WIDTH], cells [n_kind][CELL_WIDTH]. */
+char *lattice_features_options(
+    const struct lattice_features *f, const struct lattice_layout *layout);
+/* Tables of kernels/lattice/lattice_state.h; the caller frees: links [n_kind][n_kind][LINK_WIDTH],
+ * cells [n_kind][CELL_WIDTH]. */
 double *lattice_features_links(const struct lattice_cells *cells, const struct lattice_options *o);
 /* Limits [n_kind][n_kind][BREAK_WIDTH]; options have strengths. */
 double *lattice_features_limits(const struct lattice_cells *cells, const struct lattice_options *o);
 double *lattice_features_cells(const struct lattice_cells *cells, const struct lattice_options *o);
-/* Kicks [n + 2][n_kind][KICK_WIDTH] of a splitting: its evaluations; the first that ends a step only; the first that begins one only. */
+/* Kicks [n + 2][n_kind][KICK_WIDTH] of a splitting: its evaluations; the first that ends a step
+ * only; the first that begins one only. */
 double *lattice_features_kicks(const struct lattice_cells *cells, const struct lattice_options *o);
 
 #endif

@@ -1,4 +1,5 @@
-/* Frames of the lattice: a hexahedron per cell, at its place at the start, with the displacement of its corners to warp by. */
+/* Frames of the lattice: a hexahedron per cell, at its place at the start, with the displacement of
+ * its corners to warp by. */
 #include "lattice_method.h"
 
 #include <stdlib.h>
@@ -19,7 +20,9 @@ static void read_breakage(const struct sim *s, struct lattice_state *t)
     t->links = fail_alloc(n * sizeof *t->links);
     t->fate = fail_alloc(n * sizeof *t->fate);
     lattice_break_read(s->lattice->lattice->breakage, t->links, t->fate);
-    for (int64_t i = 0; i < t->n; i++) t->broken[i] = __builtin_popcount(s->lattice->cells->bits[t->gid[i]] & CELL_LINKS & ~t->links[i]);
+    for (int64_t i = 0; i < t->n; i++)
+        t->broken[i] =
+            __builtin_popcount(s->lattice->cells->bits[t->gid[i]] & CELL_LINKS & ~t->links[i]);
 }
 
 struct lattice_state *lattice_state_create(const struct sim *s)
@@ -57,13 +60,15 @@ struct lattice_state *lattice_state_create(const struct sim *s)
 void lattice_state_free(struct lattice_state *t)
 {
     if (!t) return;
-    void *own[] = {t->centre, t->u, t->turn, t->v, t->w, t->stress, t->von_mises, t->links, t->fate, t->broken, t};
+    void *own[] = {t->centre, t->u, t->turn, t->v, t->w, t->stress, t->von_mises, t->links, t->fate,
+        t->broken, t};
     for (size_t k = 0; k < sizeof own / sizeof *own; k++) free(own[k]);
 }
 
 static void cross(const double a[3], const double b[3], double out[3])
 {
-    for (int k = 0; k < 3; k++) out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+    for (int k = 0; k < 3; k++)
+        out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
 }
 
 void lattice_state_turn(const struct lattice_state *t, int64_t i, const double r[3], double out[3])
@@ -79,9 +84,11 @@ void lattice_state_turn(const struct lattice_state *t, int64_t i, const double r
 }
 
 /* Corners in VTK's order, and their displacements. */
-static void corners(const struct sim *s, const struct lattice_state *t, double (*x)[3], double (*u)[3])
+static void corners(
+    const struct sim *s, const struct lattice_state *t, double (*x)[3], double (*u)[3])
 {
-    static const int corner[CORNERS][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}};
+    static const int corner[CORNERS][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
+        {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}};
     const struct lattice_cells *c = s->lattice->cells;
     for (int64_t i = 0; i < t->n; i++) {
         double half = 0.5 * c->grid[c->kind[c->kind_of[t->gid[i]]].grid].h, r[3], turned[3];
@@ -103,7 +110,9 @@ static int32_t *integers(const struct sim *s, const struct lattice_state *t, con
     int32_t *value = fail_alloc((size_t)t->n * sizeof *value);
     for (int64_t i = 0; i < t->n; i++) {
         int64_t g = t->gid[i];
-        value[i] = !strcmp(name, "body") ? c->body[g] : !strcmp(name, "owner") ? s->comm->rank : c->kind[c->kind_of[g]].material;
+        value[i] = !strcmp(name, "body")    ? c->body[g]
+                   : !strcmp(name, "owner") ? s->comm->rank
+                                            : c->kind[c->kind_of[g]].material;
     }
     return value;
 }
@@ -113,17 +122,27 @@ static void shown_fields(const struct sim *s, const struct lattice_state *t, str
     for (int k = 0; k < s->scene->output.n_field; k++) {
         const char *name = s->scene->output.field[k];
         if (!strcmp(name, "displacement")) continue; /* by corner */
-        if (!strcmp(name, "velocity")) sheet_add(f, "velocity", "m/s", "velocity of the centre", COLUMN_F64, 3, t->v);
-        else if (!strcmp(name, "angular_velocity")) sheet_add(f, "angular_velocity", "rad/s", "angular velocity", COLUMN_F64, 3, t->w);
+        if (!strcmp(name, "velocity"))
+            sheet_add(f, "velocity", "m/s", "velocity of the centre", COLUMN_F64, 3, t->v);
+        else if (!strcmp(name, "angular_velocity"))
+            sheet_add(f, "angular_velocity", "rad/s", "angular velocity", COLUMN_F64, 3, t->w);
         else if (!strcmp(name, "rotation"))
             sheet_add(f, "rotation", t->turn_width == 4 ? "1" : "rad",
-                t->turn_width == 4 ? "quaternion w, x, y, z" : "small rotation about x, y, z, and 0", COLUMN_F64, 4, t->turn);
+                t->turn_width == 4 ? "quaternion w, x, y, z"
+                                   : "small rotation about x, y, z, and 0",
+                COLUMN_F64, 4, t->turn);
         else if (!strcmp(name, "id")) sheet_add(f, "id", "1", "global id", COLUMN_I64, 1, t->gid);
-        else if (!strcmp(name, "stress")) sheet_add(f, "stress", "Pa", "stress in the world's axes, rows of the tensor", COLUMN_F64, 9, t->stress);
-        else if (!strcmp(name, "von_mises")) sheet_add(f, "von_mises", "Pa", "von Mises' equivalent stress", COLUMN_F64, 1, t->von_mises);
-        else if (!strcmp(name, "broken")) sheet_add(f, "broken", "1", "links that the cell has lost", COLUMN_I32, 1, t->broken);
+        else if (!strcmp(name, "stress"))
+            sheet_add(f, "stress", "Pa", "stress in the world's axes, rows of the tensor",
+                COLUMN_F64, 9, t->stress);
+        else if (!strcmp(name, "von_mises"))
+            sheet_add(
+                f, "von_mises", "Pa", "von Mises' equivalent stress", COLUMN_F64, 1, t->von_mises);
+        else if (!strcmp(name, "broken"))
+            sheet_add(f, "broken", "1", "links that the cell has lost", COLUMN_I32, 1, t->broken);
         else {
-            sheet_add(f, name, "1", "index in the scene; owner: rank", COLUMN_I32, 1, sheet_keep(f, integers(s, t, name)));
+            sheet_add(f, name, "1", "index in the scene; owner: rank", COLUMN_I32, 1,
+                sheet_keep(f, integers(s, t, name)));
         }
     }
 }
@@ -132,27 +151,35 @@ void lattice_method_frame(struct sim *s, int64_t index)
 {
     struct lattice_state *t = lattice_state_create(s);
     size_t n = (size_t)t->n;
-    double(*x)[3] = fail_alloc(CORNERS * n * sizeof *x), (*u)[3] = fail_alloc(CORNERS * n * sizeof *u);
+    double(*x)[3] = fail_alloc(CORNERS * n * sizeof *x),
+    (*u)[3] = fail_alloc(CORNERS * n * sizeof *u);
     struct sheet shown = {.n = 0}, state = {.n = 0};
     corners(s, t, x, u);
-    const struct column point[] = {{"position", "m", "corners of the cells at the start", COLUMN_F64, 3, x},
+    const struct column point[] = {
+        {"position", "m", "corners of the cells at the start", COLUMN_F64, 3, x},
         {"displacement", "m", "displacement of the corners", COLUMN_F64, 3, u}};
     shown_fields(s, t, &shown);
     sheet_add(&state, "id", "1", "global id", COLUMN_I64, 1, t->gid);
     sheet_add(&state, "displacement", "m", "displacement of the centre", COLUMN_F64, 3, t->u);
-    sheet_add(&state, "rotation", t->turn_width == 4 ? "1" : "rad", "quaternion w, x, y, z, or a small rotation and 0", COLUMN_F64, 4, t->turn);
+    sheet_add(&state, "rotation", t->turn_width == 4 ? "1" : "rad",
+        "quaternion w, x, y, z, or a small rotation and 0", COLUMN_F64, 4, t->turn);
     sheet_add(&state, "velocity", "m/s", "velocity of the centre", COLUMN_F64, 3, t->v);
     sheet_add(&state, "angular_velocity", "rad/s", "angular velocity", COLUMN_F64, 3, t->w);
     if (t->links) {
-        sheet_add(&state, "links", "1", "links left, a bit for each of -x, +x, -y, +y, -z, +z", COLUMN_I32, 1, t->links);
-        sheet_add(&state, "fate", "1", "how links at upper faces broke, three bits for each of x, y, z: tension 1, shear 2, bending 3, twist 4",
+        sheet_add(&state, "links", "1", "links left, a bit for each of -x, +x, -y, +y, -z, +z",
+            COLUMN_I32, 1, t->links);
+        sheet_add(&state, "fate", "1",
+            "how links at upper faces broke, three bits for each of x, y, z: tension 1, shear 2, "
+            "bending 3, twist 4",
             COLUMN_I32, 1, t->fate);
     }
     lattice_restore_columns(s, &state);
     struct table table[2] = {{"cells", t->n, state.column, state.n}};
     double *total = sheet_keep(&state, lattice_restore_totals(s));
-    const struct column column = {"number", "1", "totals and what the loop has noted, see lattice_restore.c", COLUMN_F64, 1, total};
-    table[1] = (struct table){"totals", s->comm->rank == 0 ? LATTICE_RESTORE_TOTALS : 0, &column, 1};
+    const struct column column = {"number", "1",
+        "totals and what the loop has noted, see lattice_restore.c", COLUMN_F64, 1, total};
+    table[1] =
+        (struct table){"totals", s->comm->rank == 0 ? LATTICE_RESTORE_TOTALS : 0, &column, 1};
     struct frame_scalar scalar[RESUME_SCALARS];
     resume_note(s, scalar);
     struct frame frame = {.step = s->step,

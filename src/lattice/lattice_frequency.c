@@ -24,8 +24,8 @@ static int kinds_on(const struct lattice_cells *cells, int grid, int *one)
 }
 
 /* Cells first to end - 1, all those of a grid, of several materials. */
-static double mixed_grid(
-    const struct scene *scene, const struct lattice_cells *cells, int64_t first, int64_t end, const struct link_material *materials)
+static double mixed_grid(const struct scene *scene, const struct lattice_cells *cells,
+    int64_t first, int64_t end, const struct link_material *materials)
 {
     size_t n = (size_t)(end - first);
     int(*neighbour)[6] = fail_alloc(n * sizeof *neighbour);
@@ -59,11 +59,13 @@ double lattice_frequency_largest(const struct scene *scene, const struct lattice
     struct link_material *materials = fail_alloc((size_t)cells->n_kind * sizeof *materials);
     double largest = 0;
     int64_t first = 0, end;
-    for (int k = 0; k < cells->n_kind; k++) materials[k] = lattice_frequency_material(&scene->material[cells->kind[k].material]);
+    for (int k = 0; k < cells->n_kind; k++)
+        materials[k] = lattice_frequency_material(&scene->material[cells->kind[k].material]);
     for (int g = 0; g < cells->n_grid; g++, first = end) {
         int kind = 0, n = kinds_on(cells, g, &kind);
         for (end = first; end < cells->n && cells->kind[cells->kind_of[end]].grid == g;) end++;
-        double own = n == 1 ? lattice_limit_uniform((enum link_set)scene->lattice.law, materials[kind], cells->grid[g].h)
+        double own = n == 1 ? lattice_limit_uniform((enum link_set)scene->lattice.law,
+                                  materials[kind], cells->grid[g].h)
                             : mixed_grid(scene, cells, first, end, materials);
         largest = fmax(largest, own);
     }
@@ -71,15 +73,19 @@ double lattice_frequency_largest(const struct scene *scene, const struct lattice
     return largest;
 }
 
-double lattice_frequency_damping(const struct scene *scene, const struct lattice_cells *cells, double largest)
+double lattice_frequency_damping(
+    const struct scene *scene, const struct lattice_cells *cells, double largest)
 {
     double eta = 0;
-    for (int k = 0; k < cells->n_kind; k++) eta = fmax(eta, scene->material[cells->kind[k].material].link_damping);
+    for (int k = 0; k < cells->n_kind; k++)
+        eta = fmax(eta, scene->material[cells->kind[k].material].link_damping);
     return 0.5 * eta * largest;
 }
 
 double lattice_frequency_step(const struct scene *scene, const struct lattice_cells *cells)
 {
     double largest = lattice_frequency_largest(scene, cells);
-    return lattice_limit_factor((enum lattice_scheme)scene->time.scheme, lattice_frequency_damping(scene, cells, largest)) / largest;
+    return lattice_limit_factor((enum lattice_scheme)scene->time.scheme,
+               lattice_frequency_damping(scene, cells, largest)) /
+           largest;
 }

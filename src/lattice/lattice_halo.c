@@ -4,8 +4,8 @@
 
 #include "comm/fail.h"
 
-static void bind(
-    struct launch *launch, const struct lattice_layout *layout, const struct buffer *x, const struct buffer *v, const struct buffer *word)
+static void bind(struct launch *launch, const struct lattice_layout *layout, const struct buffer *x,
+    const struct buffer *v, const struct buffer *word)
 {
     launch_set_long(launch, "plane", layout->plane);
     launch_bind_buffer(launch, "x", x);
@@ -13,25 +13,29 @@ static void bind(
     if (word) launch_bind_buffer(launch, "word", word);
 }
 
-static void upload(struct device *dev, struct buffer *buffer, const char *name, const int *data, int64_t n)
+static void upload(
+    struct device *dev, struct buffer *buffer, const char *name, const int *data, int64_t n)
 {
     buffer_init(buffer, name);
     buffer_reserve(dev, buffer, (size_t)n * sizeof *data);
     buffer_write(dev, buffer, 0, (size_t)n * sizeof *data, data);
 }
 
-struct lattice_halo *lattice_halo_create(struct device *dev, const struct comm *comm, const struct program *program,
-    const struct lattice_layout *layout, const struct buffer *x, int n_x, size_t x_bytes, const struct buffer *v, int n_v, size_t v_bytes,
+struct lattice_halo *lattice_halo_create(struct device *dev, const struct comm *comm,
+    const struct program *program, const struct lattice_layout *layout, const struct buffer *x,
+    int n_x, size_t x_bytes, const struct buffer *v, int n_v, size_t v_bytes,
     const struct buffer *word)
 {
-    static const char *const name[] = {"lattice packed", "lattice arrived", "lattice send staging", "lattice receive staging"};
+    static const char *const name[] = {
+        "lattice packed", "lattice arrived", "lattice send staging", "lattice receive staging"};
     struct lattice_halo *h = fail_alloc(sizeof *h);
     struct exchange *out = &h->exchange;
     upload(dev, &h->send, "lattice send", layout->send, layout->n_send);
     upload(dev, &h->recv, "lattice receive", layout->recv, layout->n_recv);
     exchange_init(out, name);
     exchange_plan(out, comm, layout->count_to);
-    exchange_bind(dev, out, (size_t)n_x * x_bytes + (size_t)n_v * v_bytes + (word ? sizeof(int32_t) : 0), true);
+    exchange_bind(dev, out,
+        (size_t)n_x * x_bytes + (size_t)n_v * v_bytes + (word ? sizeof(int32_t) : 0), true);
     h->pack = launch_create(program, "lattice_pack");
     h->unpack = launch_create(program, "lattice_unpack");
     bind(h->pack, layout, x, v, word);
@@ -56,7 +60,8 @@ void lattice_halo_free(struct device *dev, struct lattice_halo *h)
     free(h);
 }
 
-void lattice_halo_begin(struct device *dev, struct lattice_halo *h, int64_t x_in, int64_t v_in, struct timers *timers)
+void lattice_halo_begin(
+    struct device *dev, struct lattice_halo *h, int64_t x_in, int64_t v_in, struct timers *timers)
 {
     launch_set_long(h->pack, "x_in", x_in);
     launch_set_long(h->pack, "v_in", v_in);
@@ -65,8 +70,10 @@ void lattice_halo_begin(struct device *dev, struct lattice_halo *h, int64_t x_in
     exchange_begin(dev, &h->exchange, h->pack, timers);
 }
 
-void lattice_halo_swap(struct device *dev, struct lattice_halo *h, cl_event *most, struct timers *timers)
+void lattice_halo_swap(
+    struct device *dev, struct lattice_halo *h, cl_event *most, struct timers *timers)
 {
-    const cl_event *arrived = exchange_swap(dev, &h->exchange, &h->exchange.arrived, 0, most, timers);
+    const cl_event *arrived =
+        exchange_swap(dev, &h->exchange, &h->exchange.arrived, 0, most, timers);
     launch_run(h->unpack, dev->compute, h->exchange.n_recv, 1, arrived, NULL);
 }

@@ -1,5 +1,6 @@
-/* Ghosts of the lattice: fetched before each evaluation of the forces, while the device works on cells that need none. The order of calls, and why
- * the copy of arrivals cannot overtake what still reads the ones before, is that of ghosts.h. Knows records and indices, no physics. */
+/* Ghosts of the lattice: fetched before each evaluation of the forces, while the device works on
+ * cells that need none. The order of calls, and why the copy of arrivals cannot overtake what still
+ * reads the ones before, is that of ghosts.h. Knows records and indices, no physics. */
 #ifndef DEMOCLES_LATTICE_HALO_H
 #define DEMOCLES_LATTICE_HALO_H
 
@@ -12,16 +13,21 @@ struct lattice_halo {
     struct launch *pack, *unpack;
 };
 
-/* n_x, n_v: numbers of each cell that travel, of so many bytes each. x, v: the buffers that hold them; word: that of the cells' words where links
- * break, else NULL. Collective. */
-struct lattice_halo *lattice_halo_create(struct device *dev, const struct comm *comm, const struct program *program,
-    const struct lattice_layout *layout, const struct buffer *x, int n_x, size_t x_bytes, const struct buffer *v, int n_v, size_t v_bytes,
+/* n_x, n_v: numbers of each cell that travel, of so many bytes each. x, v: the buffers that hold
+ * them; word: that of the cells' words where links break, else NULL. Collective. */
+struct lattice_halo *lattice_halo_create(struct device *dev, const struct comm *comm,
+    const struct program *program, const struct lattice_layout *layout, const struct buffer *x,
+    int n_x, size_t x_bytes, const struct buffer *v, int n_v, size_t v_bytes,
     const struct buffer *word);
 void lattice_halo_free(struct device *dev, struct lattice_halo *h);
 
-/* Packs from the sets of planes that begin with numbers x_in and v_in, reads back, posts receives. */
-void lattice_halo_begin(struct device *dev, struct lattice_halo *h, int64_t x_in, int64_t v_in, struct timers *timers);
-/* After the interior's kernels are enqueued: sends, waits for arrivals, enqueues what puts them in place. `most`: see exchange_swap. */
-void lattice_halo_swap(struct device *dev, struct lattice_halo *h, cl_event *most, struct timers *timers);
+/* Packs from the sets of planes that begin with numbers x_in and v_in, reads back, posts
+ * receives. */
+void lattice_halo_begin(
+    struct device *dev, struct lattice_halo *h, int64_t x_in, int64_t v_in, struct timers *timers);
+/* After the interior's kernels are enqueued: sends, waits for arrivals, enqueues what puts them in
+ * place. `most`: see exchange_swap. */
+void lattice_halo_swap(
+    struct device *dev, struct lattice_halo *h, cl_event *most, struct timers *timers);
 
 #endif

@@ -15,7 +15,8 @@ static void rows_at(void *context, double t, double from, double to, double *row
 }
 
 /* What cells of a kind bear. */
-static struct link_strength strength_of(const struct scene *scene, const struct lattice_cells *cells, int kind)
+static struct link_strength strength_of(
+    const struct scene *scene, const struct lattice_cells *cells, int kind)
 {
     const struct material *m = &scene->material[cells->kind[kind].material];
     struct link_strength s = {HUGE_VAL, HUGE_VAL, (int)m->criterion};
@@ -23,13 +24,16 @@ static struct link_strength strength_of(const struct scene *scene, const struct 
     s.shear = m->shear;
     s.tension = m->tension;
     if (!(m->energy > 0)) return s;
-    /* by the pull alone: the link at a crack's tip also bends, and the sum of both would break it at 0.64 of the load (cases/notched_bar) */
+    /* by the pull alone: the link at a crack's tip also bends, and the sum of both would break it
+     * at 0.64 of the load (cases/notched_bar) */
     s.criterion = CRITERION_LARGEST;
-    s.tension = link_constants_tension(lattice_frequency_material(m), m->energy, cells->grid[cells->kind[kind].grid].h, m->plane == PLANE_STRAIN);
+    s.tension = link_constants_tension(lattice_frequency_material(m), m->energy,
+        cells->grid[cells->kind[kind].grid].h, m->plane == PLANE_STRAIN);
     return s;
 }
 
-struct lattice_input *lattice_input_create(const struct scene *scene, const struct lattice_cells *cells, double dt)
+struct lattice_input *lattice_input_create(
+    const struct scene *scene, const struct lattice_cells *cells, double dt)
 {
     struct lattice_input *input = fail_alloc(sizeof *input);
     size_t n = (size_t)scene->n_material;
@@ -39,12 +43,15 @@ struct lattice_input *lattice_input_create(const struct scene *scene, const stru
     input->loads = cells->loads;
     for (size_t m = 0; m < n; m++) {
         input->material[m] = lattice_frequency_material(&scene->material[m]);
-        input->alpha[m] = scene->lattice.relax ? 1 / scene->time.end : scene->material[m].mass_damping; /* lattice_relax.h sets it anew */
+        /* lattice_relax.h sets it anew */
+        input->alpha[m] =
+            scene->lattice.relax ? 1 / scene->time.end : scene->material[m].mass_damping;
     }
     input->options = (struct lattice_options){.dt = dt,
         .scheme = (enum lattice_scheme)scene->time.scheme,
         .turn = scene->lattice.rotation == ROTATION_FINITE,
-        .real_is_float = scene->precision == PRECISION_SINGLE || scene->precision == PRECISION_MIXED,
+        .real_is_float =
+            scene->precision == PRECISION_SINGLE || scene->precision == PRECISION_MIXED,
         .position_is_float = scene->precision == PRECISION_SINGLE,
         .set = (enum link_set)scene->lattice.law,
         .material = input->material,
@@ -56,9 +63,11 @@ struct lattice_input *lattice_input_create(const struct scene *scene, const stru
     input->strength = fail_alloc((size_t)cells->n_kind * sizeof *input->strength);
     for (int k = 0; k < cells->n_kind; k++) {
         input->strength[k] = strength_of(scene, cells, k);
-        if (isfinite(input->strength[k].tension) || isfinite(input->strength[k].shear)) input->options.strength = input->strength;
+        if (isfinite(input->strength[k].tension) || isfinite(input->strength[k].shear))
+            input->options.strength = input->strength;
     }
-    for (int m = 0; m < scene->n_measure; m++) input->options.energy |= scene->measure[m].kind == MEASURE_ENERGY;
+    for (int m = 0; m < scene->n_measure; m++)
+        input->options.energy |= scene->measure[m].kind == MEASURE_ENERGY;
     memcpy(input->options.gravity, scene->gravity, sizeof input->options.gravity);
     return input;
 }

@@ -16,7 +16,8 @@ struct lattice_input {
 };
 
 /* dt [s] of a step. `scene` and `cells` are borrowed. */
-struct lattice_input *lattice_input_create(const struct scene *scene, const struct lattice_cells *cells, double dt);
+struct lattice_input *lattice_input_create(
+    const struct scene *scene, const struct lattice_cells *cells, double dt);
 void lattice_input_free(struct lattice_input *input); /* NULL is fine */
 
 #endif

@@ -8,15 +8,18 @@
 #include "kernels/lattice/lattice_words.h"
 #include "comm/fail.h"
 
-/* What a run costs beside its places, in places. One with cells of several kinds, loads or fixed DOF counts twice: 60^3 cells of which all runs are
- * so took 1.2 (fixed DOF), 2.6 (loads) and 3.2 times (kinds) as long as without. */
+/* What a run costs beside its places, in places. One with cells of several kinds, loads or fixed
+ * DOF counts twice: 60^3 cells of which all runs are so took 1.2 (fixed DOF), 2.6 (loads) and 3.2
+ * times (kinds) as long as without. */
 enum { RUN_COST = 6 };
 /* Lengths that are tried: whole vectors of any processor, and work-groups that any device takes. */
 enum { RUN_SHORTEST = 16, RUN_LONGEST = 128, RUN_STEP = 8 };
-/* Planes begin this many cells beyond a multiple of 1024: aligned for any vector, and in different sets of a cache. */
+/* Planes begin this many cells beyond a multiple of 1024: aligned for any vector, and in different
+ * sets of a cache. */
 enum { PLANE_SHIFT = 80 };
-/* Cells in one layer of a tile, see order_runs. On 100^3 cells in double precision, pocl 3.1, AMD Zen 5 with 1 MiB per core: without tiles 48
- * million cells/s, with 800 cells 50, with 1,600 cells 52, with 3,200 cells 50. */
+/* Cells in one layer of a tile, see order_runs. On 100^3 cells in double precision, pocl 3.1, AMD
+ * Zen 5 with 1 MiB per core: without tiles 48 million cells/s, with 800 cells 50, with 1,600 cells
+ * 52, with 3,200 cells 50. */
 enum { TILE_CELLS = 1600 };
 enum { NOTHING, OWNED, FIRST_GHOST, SECOND_GHOST };
 
@@ -38,7 +41,8 @@ struct lattice_lay lattice_layout_run(const struct lattice_cells *cells)
         int32_t *order = lattice_places_order(cells, axis);
         for (int length = RUN_SHORTEST; length <= RUN_LONGEST; length += RUN_STEP) {
             struct lattice_lay run = {axis, length};
-            int64_t n_mixed, n = lattice_places_count(cells, run, order, &n_mixed), cost = (n + n_mixed) * (length + RUN_COST);
+            int64_t n_mixed, n = lattice_places_count(cells, run, order, &n_mixed),
+                             cost = (n + n_mixed) * (length + RUN_COST);
             bool better = cost < least || (cost == least && axis == best.axis);
             if (better) best = run;
             if (better) least = cost;
@@ -71,7 +75,8 @@ static void mark(struct build *b)
 
 static int index_of(const struct build *b, int64_t gid)
 {
-    return b->local[b->places->run_of[gid]] * b->l->run + lattice_places_lane(b->places, b->cells, gid);
+    return b->local[b->places->run_of[gid]] * b->l->run +
+           lattice_places_lane(b->places, b->cells, gid);
 }
 
 static void number_runs(struct build *b)
@@ -90,7 +95,8 @@ static void number_runs(struct build *b)
     l->base = fail_alloc(4 * (size_t)l->n_run * sizeof *l->base);
     for (int r = 0; r < b->places->n_run; r++)
         for (int f = 0; f < 4 && b->local[r]; f++) {
-            int other = f / 2 + (f / 2 >= axis), beside = lattice_places_beside(b->places, r, other, f % 2 ? 1 : -1);
+            int other = f / 2 + (f / 2 >= axis),
+                beside = lattice_places_beside(b->places, r, other, f % 2 ? 1 : -1);
             if (beside >= 0) l->base[f * l->n_run + b->local[r]] = b->local[beside] * l->run;
         }
 }
@@ -105,7 +111,8 @@ static void fill_words(struct build *b)
     for (int64_t i = 0; i < b->cells->n; i++) {
         if (!b->mark[i]) continue;
         int at = index_of(b, i), has_links = b->mark[i] <= FIRST_GHOST;
-        l->word[at] = (has_links ? b->cells->bits[i] & 63 : 0) | (b->cells->bits[i] & 63 << WORD_FIX) | (b->mark[i] == OWNED) << WORD_OWNED |
+        l->word[at] = (has_links ? b->cells->bits[i] & 63 : 0) |
+                      (b->cells->bits[i] & 63 << WORD_FIX) | (b->mark[i] == OWNED) << WORD_OWNED |
                       b->cells->kind_of[i] << WORD_KIND;
         l->row[at] = b->cells->row ? b->cells->row[i] : 0;
         if (b->mark[i] != OWNED) continue;
@@ -124,7 +131,8 @@ static void fill_info(struct build *b)
         if (b->mark[i] != OWNED && b->mark[i] != FIRST_GHOST) continue;
         int *info = &l->info[b->local[b->places->run_of[i]]], kind = b->cells->kind_of[i];
         if (*info < 0) *info = kind;
-        bool apart = (*info & (RUN_MIXED - 1)) != kind || b->cells->bits[i] >> WORD_FIX || (b->cells->row && b->cells->row[i]);
+        bool apart = (*info & (RUN_MIXED - 1)) != kind || b->cells->bits[i] >> WORD_FIX ||
+                     (b->cells->row && b->cells->row[i]);
         for (int f = 0; f < 6; f++) {
             int64_t j = linked(b, i, f);
             apart |= j >= 0 && b->cells->kind_of[j] != kind;
@@ -149,15 +157,19 @@ static int compare_tiles(const void *a, const void *b)
     return p->run < q->run ? -1 : p->run > q->run; /* runs are sorted by grid, far, near, along */
 }
 
-/* The runs of this rank in the order in which kernels take them: tiles of some rows along the near axis, each through all layers along the far
- * one, so that the three layers that the links of a row reach stay in a core's cache. */
+/* The runs of this rank in the order in which kernels take them: tiles of some rows along the near
+ * axis, each through all layers along the far one, so that the three layers that the links of a row
+ * reach stay in a core's cache. */
 static int *order_runs(const struct build *b)
 {
     const struct lattice_place *p = b->places->place;
     struct tile *tile = fail_alloc((size_t)b->l->n_run * sizeof *tile);
     int *order = fail_alloc((size_t)b->l->n_run * sizeof *order), n = 0, row = 0, longest = 1;
     for (int r = 0; r < b->places->n_run; r++) {
-        row = r > 0 && p[r].grid == p[r - 1].grid && p[r].far == p[r - 1].far && p[r].near == p[r - 1].near ? row + 1 : 1;
+        row = r > 0 && p[r].grid == p[r - 1].grid && p[r].far == p[r - 1].far &&
+                      p[r].near == p[r - 1].near
+                  ? row + 1
+                  : 1;
         if (row > longest) longest = row;
     }
     int rows = TILE_CELLS / (longest * b->l->run);
@@ -170,8 +182,10 @@ static int *order_runs(const struct build *b)
     return order;
 }
 
-/* Runs with mark `yes`, first those without `late`. order: all but the first and last, which are empty. */
-static int *list(const struct lattice_layout *l, const int *order, const bool *yes, const bool *late, int *n, int *n_first)
+/* Runs with mark `yes`, first those without `late`. order: all but the first and last, which are
+ * empty. */
+static int *list(const struct lattice_layout *l, const int *order, const bool *yes,
+    const bool *late, int *n, int *n_first)
 {
     int *list = fail_alloc((size_t)l->n_run * sizeof *list);
     *n = 0;
@@ -186,9 +200,10 @@ static int *list(const struct lattice_layout *l, const int *order, const bool *y
 static void list_runs(struct build *b)
 {
     struct lattice_layout *l = b->l;
-    bool *owned = fail_alloc((size_t)l->n_run), *needed = fail_alloc((size_t)l->n_run), *late_p = fail_alloc((size_t)l->n_run),
-         *late_f = fail_alloc((size_t)l->n_run);
-    for (int pass = 0; pass < 2; pass++) /* p first: forces ask whether the p of their neighbours is late */
+    bool *owned = fail_alloc((size_t)l->n_run), *needed = fail_alloc((size_t)l->n_run),
+         *late_p = fail_alloc((size_t)l->n_run), *late_f = fail_alloc((size_t)l->n_run);
+    /* p first: forces ask whether the p of their neighbours is late */
+    for (int pass = 0; pass < 2; pass++)
         for (int64_t i = 0; i < b->cells->n; i++) {
             int r = b->local[b->places->run_of[i]];
             if (b->mark[i] != OWNED && b->mark[i] != FIRST_GHOST) continue;
@@ -200,7 +215,8 @@ static void list_runs(struct build *b)
                 if (j < 0) continue;
                 late_p[r] |= pass == 0 && b->mark[j] != OWNED;
                 if (b->mark[i] != OWNED) continue;
-                late_f[r] |= b->mark[j] != OWNED || (b->depth == 2 && pass == 1 && late_p[b->local[b->places->run_of[j]]]);
+                late_f[r] |= b->mark[j] != OWNED ||
+                             (b->depth == 2 && pass == 1 && late_p[b->local[b->places->run_of[j]]]);
             }
             late_f[r] |= b->depth == 2 && pass == 1 && late_p[r];
         }
@@ -216,7 +232,8 @@ static void list_runs(struct build *b)
 
 static void add(int **list, int64_t *n, int index)
 {
-    if ((*n & (*n - 1)) == 0) *list = fail_realloc(*list, (size_t)(*n > 0 ? 2 * *n : 16) * sizeof **list);
+    if ((*n & (*n - 1)) == 0)
+        *list = fail_realloc(*list, (size_t)(*n > 0 ? 2 * *n : 16) * sizeof **list);
     (*list)[(*n)++] = index;
 }
 
@@ -231,7 +248,8 @@ static void stamp_around(const struct build *b, int *stamp, int64_t i, int r, in
     }
 }
 
-/* Links and layers are symmetric: a rank needs those of my cells that lie within `depth` links of what I have as a ghost from it. */
+/* Links and layers are symmetric: a rank needs those of my cells that lie within `depth` links of
+ * what I have as a ghost from it. */
 static void list_ghosts(struct build *b)
 {
     struct lattice_layout *l = b->l;
@@ -257,11 +275,12 @@ static void list_ghosts(struct build *b)
     free(stamp);
 }
 
-struct lattice_layout *lattice_layout_create(
-    const struct lattice_cells *cells, const int *owner, int rank, int n_rank, struct lattice_lay run, int depth)
+struct lattice_layout *lattice_layout_create(const struct lattice_cells *cells, const int *owner,
+    int rank, int n_rank, struct lattice_lay run, int depth)
 {
     struct lattice_layout *l = fail_alloc(sizeof *l);
-    struct build b = {.cells = cells, .owner = owner, .rank = rank, .n_rank = n_rank, .depth = depth, .l = l};
+    struct build b = {
+        .cells = cells, .owner = owner, .rank = rank, .n_rank = n_rank, .depth = depth, .l = l};
     b.places = lattice_places_create(cells, run);
     mark(&b);
     number_runs(&b);
@@ -278,7 +297,8 @@ struct lattice_layout *lattice_layout_create(
 void lattice_layout_free(struct lattice_layout *l)
 {
     if (!l) return;
-    void *all[] = {l->base, l->info, l->word, l->row, l->gid, l->index, l->force, l->volume, l->count_to, l->count_from, l->send, l->recv};
+    void *all[] = {l->base, l->info, l->word, l->row, l->gid, l->index, l->force, l->volume,
+        l->count_to, l->count_from, l->send, l->recv};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) free(all[k]);
     free(l);
 }

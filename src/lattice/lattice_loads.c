@@ -8,10 +8,12 @@
 #include "scene/history.h"
 #include "lattice_parts.h"
 
-/* What a boundary takes of a cell: bits 0-5 its free faces, as links; bit 6 the cell itself, by its centre. */
+/* What a boundary takes of a cell: bits 0-5 its free faces, as links; bit 6 the cell itself, by its
+ * centre. */
 enum { TAKES_FACES = 63, TAKES_CENTRE = 64, TAKES_ALL = 128 };
 
-/* The combination of loads of a cell while it grows: that of `parent`, and one more boundary. Roots stand for grids, without a load. */
+/* The combination of loads of a cell while it grows: that of `parent`, and one more boundary. Roots
+ * stand for grids, without a load. */
 struct node {
     int parent, boundary, takes; /* parent -1: root */
     int grid;
@@ -51,7 +53,8 @@ static void choose(struct builder *b, int k)
         bool near = of->body < 0 || of->body == cells->body[i];
         b->takes[i] = 0;
         lattice_cells_centre(cells, i, x);
-        for (int a = 0; a < 3; a++) near = near && x[a] >= shape.low[a] - h && x[a] <= shape.high[a] + h;
+        for (int a = 0; a < 3; a++)
+            near = near && x[a] >= shape.low[a] - h && x[a] <= shape.high[a] + h;
         if (!near) continue;
         int takes = region_holds(&shape, x, -LATTICE_SLACK * h) ? TAKES_CENTRE : 0;
         b->n_centre += takes != 0;
@@ -72,9 +75,11 @@ static int dofs_of(const struct boundary *of)
 {
     int dofs = 0;
     for (int c = 0; c < 6; c++) {
-        bool is_mine = of->kind == BOUNDARY_FIX ? of->fix[c]
-                                                : (of->kind == BOUNDARY_VELOCITY && c < 3 && isfinite(of->value[c])) ||
-                                                      (of->kind == BOUNDARY_ANGULAR_VELOCITY && c >= 3 && isfinite(of->value[c - 3]));
+        bool is_mine = of->kind == BOUNDARY_FIX
+                           ? of->fix[c]
+                           : (of->kind == BOUNDARY_VELOCITY && c < 3 && isfinite(of->value[c])) ||
+                                 (of->kind == BOUNDARY_ANGULAR_VELOCITY && c >= 3 &&
+                                     isfinite(of->value[c - 3]));
         dofs |= is_mine << c;
     }
     return dofs;
@@ -94,7 +99,9 @@ static void hold(struct builder *b, int k)
     }
     for (int c = 0; c < 6; c++) {
         if (!(twice >> c & 1)) continue;
-        char *text = fail_format("the motion in %s of some of these cells is prescribed by a boundary before this one", dof_name[c]);
+        char *text = fail_format(
+            "the motion in %s of some of these cells is prescribed by a boundary before this one",
+            dof_name[c]);
         fault(b, k, "where", text);
         free(text);
     }
@@ -134,7 +141,8 @@ static int add_node(struct builder *b, struct node node)
 static void refine(struct builder *b, int k)
 {
     size_t n = (size_t)b->n_node * TAKES_ALL;
-    int *child = fail_alloc(n * sizeof *child); /* [node][takes]; 0: none yet, since roots are never children */
+    /* [node][takes]; 0: none yet, since roots are never children */
+    int *child = fail_alloc(n * sizeof *child);
     int64_t n_share = b->n_face > 0 ? b->n_face : b->n_centre;
     for (int64_t i = 0; i < b->cells->n; i++) {
         int takes = b->takes[i], row = b->cells->row[i];
@@ -170,7 +178,8 @@ static void fill_term(const struct scene *scene, const struct node *node, double
         for (int c = 0; c < 3; c++) value[LOAD_ACCELERATION + c] = of->value[c];
     if (of->kind == BOUNDARY_VELOCITY || of->kind == BOUNDARY_ANGULAR_VELOCITY)
         for (int c = 0; c < 3; c++)
-            if (isfinite(of->value[c])) value[LOAD_VELOCITY + (of->kind == BOUNDARY_VELOCITY ? 0 : 3) + c] = of->value[c];
+            if (isfinite(of->value[c]))
+                value[LOAD_VELOCITY + (of->kind == BOUNDARY_VELOCITY ? 0 : 3) + c] = of->value[c];
     for (int f = 0; f < 6; f++) {
         if (!(node->takes >> f & 1)) continue;
         double sign = (f & 1) ? 1 : -1;
@@ -193,7 +202,8 @@ static void fill_term(const struct scene *scene, const struct node *node, double
 static void number_rows(struct builder *b)
 {
     struct lattice_loads *loads = b->cells->loads;
-    int *row_of = fail_alloc((size_t)b->n_node * sizeof *row_of), *node_of = fail_alloc((size_t)(b->n_node + 1) * sizeof *node_of), n_term = 0;
+    int *row_of = fail_alloc((size_t)b->n_node * sizeof *row_of),
+        *node_of = fail_alloc((size_t)(b->n_node + 1) * sizeof *node_of), n_term = 0;
     loads->n_row = 1;
     for (int64_t i = 0; i < b->cells->n; i++) {
         int node = b->cells->row[i];
@@ -206,7 +216,8 @@ static void number_rows(struct builder *b)
     loads->begin = fail_alloc((size_t)(loads->n_row + 1) * sizeof *loads->begin);
     for (int r = 1; r < loads->n_row; r++) {
         loads->begin[r] = n_term;
-        for (int node = node_of[r]; b->node[node].parent >= 0; node = b->node[node].parent) n_term++;
+        for (int node = node_of[r]; b->node[node].parent >= 0; node = b->node[node].parent)
+            n_term++;
     }
     loads->begin[loads->n_row] = n_term;
     loads->boundary = fail_alloc((size_t)n_term * sizeof *loads->boundary);
@@ -215,17 +226,23 @@ static void number_rows(struct builder *b)
         int term = loads->begin[r + 1];
         for (int node = node_of[r]; b->node[node].parent >= 0; node = b->node[node].parent) {
             loads->boundary[--term] = b->node[node].boundary;
-            fill_term(b->scene, &b->node[node], b->cells->grid[b->node[node].grid].h, loads->value[term]);
+            fill_term(
+                b->scene, &b->node[node], b->cells->grid[b->node[node].grid].h, loads->value[term]);
         }
     }
     free(row_of);
     free(node_of);
 }
 
-void lattice_loads_create(const struct scene *scene, struct lattice_cells *cells, struct scene_errors *errors)
+void lattice_loads_create(
+    const struct scene *scene, struct lattice_cells *cells, struct scene_errors *errors)
 {
     size_t n = (size_t)cells->n;
-    struct builder b = {.scene = scene, .cells = cells, .errors = errors, .takes = fail_alloc(n), .moved = fail_alloc(n)};
+    struct builder b = {.scene = scene,
+        .cells = cells,
+        .errors = errors,
+        .takes = fail_alloc(n),
+        .moved = fail_alloc(n)};
     cells->row = fail_alloc(n * sizeof *cells->row);
     cells->loads = fail_alloc(sizeof *cells->loads);
     cells->loads->at = fail_alloc((size_t)scene->n_boundary * sizeof(double));
@@ -242,7 +259,10 @@ void lattice_loads_create(const struct scene *scene, struct lattice_cells *cells
             choose(&b, k);
             bool by_faces = of->kind == BOUNDARY_FORCE || of->kind == BOUNDARY_PRESSURE;
             if (b.n_centre == 0 && !(by_faces && b.n_face > 0)) {
-                if (pass == 0 || !holds) fault(&b, k, "where", by_faces ? "nothing is in this region" : "no cell has its centre in this region");
+                if (pass == 0 || !holds)
+                    fault(&b, k, "where",
+                        by_faces ? "nothing is in this region"
+                                 : "no cell has its centre in this region");
             } else if (pass == 0) hold(&b, k);
             else load(&b, k);
         }
@@ -264,7 +284,8 @@ void lattice_loads_free(struct lattice_loads *loads)
     free(loads);
 }
 
-void lattice_loads_at(struct lattice_loads *loads, const struct scene *scene, double t, double from, double to, double *rows)
+void lattice_loads_at(struct lattice_loads *loads, const struct scene *scene, double t, double from,
+    double to, double *rows)
 {
     memset(rows, 0, (size_t)loads->n_row * LOAD_WIDTH * sizeof *rows);
     for (int k = 0; k < scene->n_boundary; k++) {

@@ -8,20 +8,30 @@
 
 int lattice_method_measure_columns(enum measure_kind kind, const struct series_column **column)
 {
-    static const struct series_column probe[] = {{"x", "m"}, {"y", "m"}, {"z", "m"}, {"u_x", "m"}, {"u_y", "m"}, {"u_z", "m"}, {"v_x", "m/s"},
-        {"v_y", "m/s"}, {"v_z", "m/s"}, {"w_x", "rad/s"}, {"w_y", "rad/s"}, {"w_z", "rad/s"}};
-    static const struct series_column energy[] = {{"kinetic", "J"}, {"rotational", "J"}, {"gravity", "J"}, {"elastic", "J"}, {"link_damping", "J"},
-        {"mass_damping", "J"}, {"released", "J"}, {"work", "J"}, {"balance", "J"}};
-    static const struct series_column momentum[] = {
-        {"p_x", "N s"}, {"p_y", "N s"}, {"p_z", "N s"}, {"l_x", "N m s"}, {"l_y", "N m s"}, {"l_z", "N m s"}};
-    static const struct series_column peak[] = {{"von_mises", "Pa"}, {"x", "m"}, {"y", "m"}, {"z", "m"}};
-    static const struct series_column broken[] = {{"tension", "1"}, {"shear", "1"}, {"bending", "1"}, {"twist", "1"}};
+    static const struct series_column probe[] = {{"x", "m"}, {"y", "m"}, {"z", "m"}, {"u_x", "m"},
+        {"u_y", "m"}, {"u_z", "m"}, {"v_x", "m/s"}, {"v_y", "m/s"}, {"v_z", "m/s"},
+        {"w_x", "rad/s"}, {"w_y", "rad/s"}, {"w_z", "rad/s"}};
+    static const struct series_column energy[] = {{"kinetic", "J"}, {"rotational", "J"},
+        {"gravity", "J"}, {"elastic", "J"}, {"link_damping", "J"}, {"mass_damping", "J"},
+        {"released", "J"}, {"work", "J"}, {"balance", "J"}};
+    static const struct series_column momentum[] = {{"p_x", "N s"}, {"p_y", "N s"}, {"p_z", "N s"},
+        {"l_x", "N m s"}, {"l_y", "N m s"}, {"l_z", "N m s"}};
+    static const struct series_column peak[] = {
+        {"von_mises", "Pa"}, {"x", "m"}, {"y", "m"}, {"z", "m"}};
+    static const struct series_column broken[] = {
+        {"tension", "1"}, {"shear", "1"}, {"bending", "1"}, {"twist", "1"}};
     if (kind == MEASURE_BROKEN) {
         *column = broken;
         return LATTICE_BREAK_MODES;
     }
-    *column = kind == MEASURE_ENERGY ? energy : kind == MEASURE_MOMENTUM ? momentum : kind == MEASURE_STRESS_MAX ? peak : probe;
-    return kind == MEASURE_ENERGY ? 9 : kind == MEASURE_STRESS_MAX ? 4 : kind == MEASURE_MOMENTUM ? 6 : 12;
+    *column = kind == MEASURE_ENERGY       ? energy
+              : kind == MEASURE_MOMENTUM   ? momentum
+              : kind == MEASURE_STRESS_MAX ? peak
+                                           : probe;
+    return kind == MEASURE_ENERGY       ? 9
+           : kind == MEASURE_STRESS_MAX ? 4
+           : kind == MEASURE_MOMENTUM   ? 6
+                                        : 12;
 }
 
 /* The cell whose centre at the start is nearest, the first of several; the same on every rank. */
@@ -31,7 +41,8 @@ static int64_t nearest(const struct lattice_cells *cells, const double at[3])
     double least = HUGE_VAL, x[3];
     for (int64_t i = 0; i < cells->n; i++) {
         lattice_cells_centre(cells, i, x);
-        double d = (x[0] - at[0]) * (x[0] - at[0]) + (x[1] - at[1]) * (x[1] - at[1]) + (x[2] - at[2]) * (x[2] - at[2]);
+        double d = (x[0] - at[0]) * (x[0] - at[0]) + (x[1] - at[1]) * (x[1] - at[1]) +
+                   (x[2] - at[2]) * (x[2] - at[2]);
         if (d < least) {
             least = d;
             best = i;
@@ -41,7 +52,8 @@ static int64_t nearest(const struct lattice_cells *cells, const double at[3])
 }
 
 /* The cell's owner gives the bits, the others zeros. */
-static void measure_probe(struct sim *s, const double at[3], const struct lattice_state *t, double *value)
+static void measure_probe(
+    struct sim *s, const double at[3], const struct lattice_state *t, double *value)
 {
     int64_t gid = nearest(s->lattice->cells, at), bits[12] = {0};
     for (int64_t i = 0; i < t->n; i++) {
@@ -57,7 +69,8 @@ static void measure_probe(struct sim *s, const double at[3], const struct lattic
     memcpy(value, bits, sizeof bits);
 }
 
-/* The largest von Mises stress, and the centre at the start of the cell that has it, the first of several. */
+/* The largest von Mises stress, and the centre at the start of the cell that has it, the first of
+ * several. */
 static void measure_peak(struct sim *s, const struct lattice_state *t, double *value)
 {
     double largest = -1;
@@ -82,15 +95,16 @@ void lattice_method_measure(struct sim *s, const bool *due, double (*value)[MEAS
 {
     bool by_cell = false, by_energy = false;
     for (int i = 0; i < s->scene->n_measure; i++) {
-        bool is_energy = s->scene->measure[i].kind == MEASURE_ENERGY || s->scene->measure[i].kind == MEASURE_MOMENTUM;
+        bool is_energy = s->scene->measure[i].kind == MEASURE_ENERGY ||
+                         s->scene->measure[i].kind == MEASURE_MOMENTUM;
         by_energy |= due[i] && is_energy;
         by_cell |= due[i] && !is_energy && s->scene->measure[i].kind != MEASURE_BROKEN;
     }
     struct lattice_energy e = {.kinetic = 0};
     if (by_energy) lattice_energy_now(s->lattice->account, &e);
     struct lattice_state *t = by_cell ? lattice_state_create(s) : NULL;
-    const double energy[] = {
-        e.kinetic, e.rotational, e.gravity, e.elastic, e.links, e.mass, e.released, e.work, lattice_energy_balance(&s->lattice->energy_start, &e)};
+    const double energy[] = {e.kinetic, e.rotational, e.gravity, e.elastic, e.links, e.mass,
+        e.released, e.work, lattice_energy_balance(&s->lattice->energy_start, &e)};
     for (int i = 0; i < s->scene->n_measure; i++) {
         const struct measure *what = &s->scene->measure[i];
         if (!due[i]) continue;

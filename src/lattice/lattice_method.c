@@ -25,9 +25,10 @@ static bool is_listed(char *const *list, int n, const char *word)
 
 static bool wants_stress(const struct scene *scene)
 {
-    bool wants =
-        is_listed(scene->output.field, scene->output.n_field, "stress") || is_listed(scene->output.field, scene->output.n_field, "von_mises");
-    for (int m = 0; m < scene->n_measure; m++) wants |= scene->measure[m].kind == MEASURE_STRESS_MAX;
+    bool wants = is_listed(scene->output.field, scene->output.n_field, "stress") ||
+                 is_listed(scene->output.field, scene->output.n_field, "von_mises");
+    for (int m = 0; m < scene->n_measure; m++)
+        wants |= scene->measure[m].kind == MEASURE_STRESS_MAX;
     return wants;
 }
 
@@ -39,7 +40,9 @@ static void refuse(const struct scene *scene, struct scene_errors *errors)
         const struct measure *what = &scene->measure[m];
         for (int k = 0; k < 3; k++)
             if (is_listed(what->field, what->n_field, later[k]))
-                scene_errors_add(errors, "%s:%d: measure '%s': a probe of %s is not in this version", scene->path, what->line, what->name, later[k]);
+                scene_errors_add(errors,
+                    "%s:%d: measure '%s': a probe of %s is not in this version", scene->path,
+                    what->line, what->name, later[k]);
     }
 }
 
@@ -59,21 +62,28 @@ static void plan(struct sim *s)
     s->dt_limit = lattice_frequency_step(s->scene, s->lattice->cells);
     s->dt = s->from ? s->from->dt : t->step > 0 ? t->step : t->safety * s->dt_limit;
     if (!(s->dt > 0) || isinf(s->dt))
-        fail_stop_together(EXIT_SCENE, "%s: time.step: auto finds no limit in this scene, for no two cells are linked; give a value", s->scene->path);
+        fail_stop_together(EXIT_SCENE,
+            "%s: time.step: auto finds no limit in this scene, for no two cells are linked; give "
+            "a value",
+            s->scene->path);
     s->lattice->input = lattice_input_create(s->scene, s->lattice->cells, s->dt);
     s->inputs = lattice_restore_inputs(s);
-    if (s->from) s->lattice->input->options.energy = lattice_restore_energy(s, s->lattice->input->options.energy);
+    if (s->from)
+        s->lattice->input->options.energy =
+            lattice_restore_energy(s, s->lattice->input->options.energy);
 }
 
 static struct lattice *create(struct sim *s)
 {
-    struct lattice *l = lattice_create(s->dev, s->comm, s->lattice->cells, &s->lattice->input->options);
+    struct lattice *l =
+        lattice_create(s->dev, s->comm, s->lattice->cells, &s->lattice->input->options);
     l->timers = &s->timers;
     balance_add(s->balance, l->part);
     return l;
 }
 
-/* Steps that nobody keeps, with equal shares: what each rank does in a second is its share of the cells then. The first ones compile kernels. */
+/* Steps that nobody keeps, with equal shares: what each rank does in a second is its share of the
+ * cells then. The first ones compile kernels. */
 static void measure(struct sim *s)
 {
     struct lattice *l = create(s);
@@ -90,7 +100,8 @@ static void measure(struct sim *s)
 static void setup(struct sim *s)
 {
     struct lattice_run *r = s->lattice;
-    log_print(s->log, "%lld cells in %d %s", (long long)s->n_first, s->scene->n_body, s->scene->n_body == 1 ? "body" : "bodies");
+    log_print(s->log, "%lld cells in %d %s", (long long)s->n_first, s->scene->n_body,
+        s->scene->n_body == 1 ? "body" : "bodies");
     if (r->input->options.energy) sim_require_double(s);
     r->input->options.partition = s->scene->partition;
     r->input->options.share = s->balance->share;
@@ -99,7 +110,9 @@ static void setup(struct sim *s)
     balance_restart(s->balance);
     if (s->from) lattice_restore_cells(s);
     r->account = lattice_energy_create(r->lattice, r->cells);
-    if (wants_stress(s->scene)) r->stress = lattice_stress_create(r->lattice, s->scene->lattice.stress == STRESS_EXTRAPOLATED);
+    if (wants_stress(s->scene))
+        r->stress =
+            lattice_stress_create(r->lattice, s->scene->lattice.stress == STRESS_EXTRAPOLATED);
     if (s->scene->lattice.relax) {
         r->relax = lattice_relax_create(r->lattice, r->cells, s->scene->time.end);
         s->rest.next = s->scene->lattice.look_every - 1;
@@ -174,11 +187,15 @@ static void check_limit(struct sim *s)
     uint64_t unused;
     s->limit_at = s->step;
     if (s->dt > s->dt_limit && !s->scene->time.allow_unstable)
-        output_stop_numerics(
-            s, "the time step %.4g s is over its limit %.4g s; take a smaller time.step, or set time.allow_unstable", s->dt, s->dt_limit);
+        output_stop_numerics(s,
+            "the time step %.4g s is over its limit %.4g s; take a smaller time.step, or set "
+            "time.allow_unstable",
+            s->dt, s->dt_limit);
     if (!digest(s, &unused))
-        output_stop_numerics(
-            s, "displacements or velocities are not numbers any more; the time step %.4g s is %.3g of its limit", s->dt, s->dt / s->dt_limit);
+        output_stop_numerics(s,
+            "displacements or velocities are not numbers any more; the time step %.4g s is %.3g "
+            "of its limit",
+            s->dt, s->dt / s->dt_limit);
 }
 
 static int64_t number(const struct sim *s)
@@ -197,7 +214,8 @@ static void count(const struct sim *s, struct step_counts *counts)
     const struct lattice *l = s->lattice->lattice;
     *counts = (struct step_counts){0};
     for (int64_t i = 0; i < l->layout->n_owned; i++)
-        for (int face = 1; face < 6; face += 2) counts->n_interaction += s->lattice->cells->bits[l->layout->gid[i]] >> face & 1;
+        for (int face = 1; face < 6; face += 2)
+            counts->n_interaction += s->lattice->cells->bits[l->layout->gid[i]] >> face & 1;
     if (!l->halo) return;
     counts->sent = exchange_sent(&l->halo->exchange);
     counts->n_neighbour = l->halo->exchange.halo->n_send;
@@ -207,7 +225,8 @@ static void count(const struct sim *s, struct step_counts *counts)
 static void report_features(const struct sim *s, struct report *r)
 {
     const struct lattice_features *f = &s->lattice->lattice->features;
-    for (int i = 0; lattice_features_name(i); i++) report_integer(r, lattice_features_name(i), lattice_features_value(f, i));
+    for (int i = 0; lattice_features_name(i); i++)
+        report_integer(r, lattice_features_name(i), lattice_features_value(f, i));
 }
 
 /* Links broken so far, by mode. Collective. */
@@ -217,7 +236,8 @@ static void report_broken(struct sim *s, struct report *r)
     if (!s->lattice->lattice->breakage) return;
     lattice_break_count(s->lattice->lattice->breakage, count);
     report_begin(r, "broken");
-    for (int mode = 0; mode < LATTICE_BREAK_MODES; mode++) report_integer(r, lattice_break_name(mode), count[mode]);
+    for (int mode = 0; mode < LATTICE_BREAK_MODES; mode++)
+        report_integer(r, lattice_break_name(mode), count[mode]);
     report_end(r);
 }
 
@@ -243,7 +263,9 @@ static void report_energy(struct sim *s, struct report *r, bool observed)
         }
         report_end(r);
     }
-    report_number(r, "balance_error", by_work && observed ? lattice_energy_balance(&s->lattice->energy_start, &now) : (double)NAN);
+    report_number(r, "balance_error",
+        by_work && observed ? lattice_energy_balance(&s->lattice->energy_start, &now)
+                            : (double)NAN);
     report_end(r);
     report_numbers(r, "momentum", now.momentum, 3);
     report_broken(s, r);

@@ -1,4 +1,5 @@
-/* The parts of the lattice method, by file: lattice_method.c, lattice_frame.c, lattice_measures.c. What step.h describes is not described again. */
+/* The parts of the lattice method, by file: lattice_method.c, lattice_frame.c, lattice_measures.c.
+ * What step.h describes is not described again. */
 #ifndef DEMOCLES_LATTICE_METHOD_H
 #define DEMOCLES_LATTICE_METHOD_H
 
@@ -22,19 +23,25 @@ struct lattice_run {
     struct lattice_energy energy_start;
 };
 
-/* The observed state of this rank's cells on the host, and where their centres were at the start; [n] in ascending id. */
+/* The observed state of this rank's cells on the host, and where their centres were at the start;
+ * [n] in ascending id. */
 struct lattice_state {
     int64_t n;
-    const int64_t *gid;                                         /* borrowed */
-    double (*centre)[3], (*u)[3], (*turn)[4], (*v)[3], (*w)[3]; /* [m], [m], see below, [m/s], [rad/s] */
-    double (*stress)[9], *von_mises;                            /* [Pa]; NULL where the scene does not ask for them */
-    int32_t *links, *fate, *broken;                             /* lattice_break.h, NULL where nothing breaks; how many links it has lost */
-    int turn_width;                                             /* 4: turn is a quaternion w, x, y, z; 3: a small rotation [rad], the fourth is 0 */
+    const int64_t *gid; /* borrowed */
+    /* [m], [m], see below, [m/s], [rad/s] */
+    double (*centre)[3], (*u)[3], (*turn)[4], (*v)[3], (*w)[3];
+    /* [Pa]; NULL where the scene does not ask for them */
+    double (*stress)[9], *von_mises;
+    /* lattice_break.h, NULL where nothing breaks; how many links it has lost */
+    int32_t *links, *fate, *broken;
+    /* 4: turn is a quaternion w, x, y, z; 3: a small rotation [rad], the fourth is 0 */
+    int turn_width;
 };
 struct lattice_state *lattice_state_create(const struct sim *s); /* collective */
 void lattice_state_free(struct lattice_state *state);            /* NULL is fine */
 /* R r - r, or theta x r, of cell i for a vector r of the undeformed cell [m]. */
-void lattice_state_turn(const struct lattice_state *state, int64_t i, const double r[3], double out[3]);
+void lattice_state_turn(
+    const struct lattice_state *state, int64_t i, const double r[3], double out[3]);
 
 void lattice_method_frame(struct sim *s, int64_t index);
 int lattice_method_measure_columns(enum measure_kind kind, const struct series_column **column);

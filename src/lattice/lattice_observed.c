@@ -18,8 +18,9 @@ void lattice_observed_bind(const struct lattice *l, struct launch *launch)
     launch_set_long(launch, "v_in", v_at(l));
 }
 
-/* After a step that ends with drifts, or whose velocities were kicked, ghosts are still those of its last evaluation. Each evaluation fetches its
- * own, so these may be overwritten; so may pressures and rows of loads. */
+/* After a step that ends with drifts, or whose velocities were kicked, ghosts are still those of
+ * its last evaluation. Each evaluation fetches its own, so these may be overwritten; so may
+ * pressures and rows of loads. */
 void lattice_observed_refresh(struct lattice *l, bool with_pressure)
 {
     double t = (double)l->step * l->options.dt;
@@ -35,5 +36,6 @@ void lattice_observed_refresh(struct lattice *l, bool with_pressure)
     lattice_observed_bind(l, l->volume);
     launch_set_int(l->volume, "first", 0);
     launch_set_int(l->volume, "n", l->layout->n_volume);
-    launch_run(l->volume, l->dev->compute, (int64_t)l->layout->n_volume * l->layout->run, 0, NULL, NULL);
+    launch_run(
+        l->volume, l->dev->compute, (int64_t)l->layout->n_volume * l->layout->run, 0, NULL, NULL);
 }

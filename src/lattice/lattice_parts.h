@@ -29,22 +29,27 @@ struct lattice_list {
 };
 
 /* Opens shape and holes and counts cells along each axis; false with messages where that fails. */
-bool lattice_cut_open(struct lattice_cut *cut, const struct scene *scene, int body, struct scene_errors *errors);
+bool lattice_cut_open(
+    struct lattice_cut *cut, const struct scene *scene, int body, struct scene_errors *errors);
 void lattice_cut_close(struct lattice_cut *cut);
-/* Deals the bodies to grids; sets grid and shift of each, n and grid of cells. False with messages where a grid is too large. */
-bool lattice_cut_place(struct lattice_cut *cut, const struct scene *scene, struct lattice_cells *cells, struct scene_errors *errors);
+/* Deals the bodies to grids; sets grid and shift of each, n and grid of cells. False with messages
+ * where a grid is too large. */
+bool lattice_cut_place(struct lattice_cut *cut, const struct scene *scene,
+    struct lattice_cells *cells, struct scene_errors *errors);
 /* Appends the body's cells, by ascending key. */
 void lattice_cut_append(struct lattice_cut *cut, struct lattice_list *list);
 
 /* scene.yaml:LINE:COLUMN: text */
-void lattice_fault(const struct scene *scene, struct scene_errors *errors, int line, int column, const char *format, ...)
-    __attribute__((format(printf, 5, 6)));
+void lattice_fault(const struct scene *scene, struct scene_errors *errors, int line, int column,
+    const char *format, ...) __attribute__((format(printf, 5, 6)));
 
 /* Links are known: takes out those in the bodies' cracks. */
-void lattice_cracks_cut(const struct scene *scene, struct lattice_cells *cells, struct scene_errors *errors);
+void lattice_cracks_cut(
+    const struct scene *scene, struct lattice_cells *cells, struct scene_errors *errors);
 
 /* Fixed DOF and rows of loads into `cells`, whose links are known. */
-void lattice_loads_create(const struct scene *scene, struct lattice_cells *cells, struct scene_errors *errors);
+void lattice_loads_create(
+    const struct scene *scene, struct lattice_cells *cells, struct scene_errors *errors);
 void lattice_loads_free(struct lattice_loads *loads);
 
 #endif

@@ -25,10 +25,12 @@ static int grid_of(const struct lattice_cells *c, int64_t i)
     return c->kind[c->kind_of[i]].grid;
 }
 
-static struct lattice_place place_of(const struct lattice_cells *c, int64_t i, struct lattice_lay run)
+static struct lattice_place place_of(
+    const struct lattice_cells *c, int64_t i, struct lattice_lay run)
 {
     const int32_t *at = c->at[i];
-    return (struct lattice_place){grid_of(c, i), at[far_axis(run.axis)], at[near_axis(run.axis)], floor_div(at[run.axis], run.length)};
+    return (struct lattice_place){grid_of(c, i), at[far_axis(run.axis)], at[near_axis(run.axis)],
+        floor_div(at[run.axis], run.length)};
 }
 
 static int compare(const struct lattice_place *a, const struct lattice_place *b)
@@ -39,7 +41,8 @@ static int compare(const struct lattice_place *a, const struct lattice_place *b)
     return a->along == b->along ? 0 : a->along < b->along ? -1 : 1;
 }
 
-/* One pass of a sort by counting: by where cells are along an axis, or by grid (axis 3). Cells with the same keep their order. */
+/* One pass of a sort by counting: by where cells are along an axis, or by grid (axis 3). Cells with
+ * the same keep their order. */
 static int32_t *sorted(const struct lattice_cells *c, int32_t *order, int axis)
 {
     int32_t most = 0, *next = fail_alloc((size_t)c->n * sizeof *next);
@@ -64,11 +67,13 @@ int32_t *lattice_places_order(const struct lattice_cells *cells, int axis)
     int32_t *order = fail_alloc((size_t)cells->n * sizeof *order);
     const int by[] = {axis, near_axis(axis), far_axis(axis), 3};
     for (int64_t i = 0; i < cells->n; i++) order[i] = (int32_t)i;
-    for (int k = 0; k < 4 && axis > 0; k++) order = sorted(cells, order, by[k]); /* along x they are sorted so */
+    /* along x they are sorted so */
+    for (int k = 0; k < 4 && axis > 0; k++) order = sorted(cells, order, by[k]);
     return order;
 }
 
-int64_t lattice_places_count(const struct lattice_cells *cells, struct lattice_lay run, const int32_t *order, int64_t *n_mixed)
+int64_t lattice_places_count(const struct lattice_cells *cells, struct lattice_lay run,
+    const int32_t *order, int64_t *n_mixed)
 {
     struct lattice_place last = {-1, 0, 0, 0};
     int64_t n = 0, mixed = 0;
@@ -82,14 +87,16 @@ int64_t lattice_places_count(const struct lattice_cells *cells, struct lattice_l
             is_mixed = 0;
             kind = cells->kind_of[i];
         }
-        is_mixed |= cells->kind_of[i] != kind || cells->bits[i] & CELL_FIXED || (cells->row && cells->row[i]);
+        is_mixed |= cells->kind_of[i] != kind || cells->bits[i] & CELL_FIXED ||
+                    (cells->row && cells->row[i]);
         last = p;
     }
     if (n_mixed) *n_mixed = mixed + is_mixed;
     return n;
 }
 
-struct lattice_places *lattice_places_create(const struct lattice_cells *cells, struct lattice_lay run)
+struct lattice_places *lattice_places_create(
+    const struct lattice_cells *cells, struct lattice_lay run)
 {
     struct lattice_places *p = fail_alloc(sizeof *p);
     int32_t *order = lattice_places_order(cells, run.axis);
@@ -112,7 +119,8 @@ struct lattice_places *lattice_places_create(const struct lattice_cells *cells, 
     return p;
 }
 
-int lattice_places_lane(const struct lattice_places *p, const struct lattice_cells *cells, int64_t gid)
+int lattice_places_lane(
+    const struct lattice_places *p, const struct lattice_cells *cells, int64_t gid)
 {
     return cells->at[gid][p->run.axis] - p->place[p->run_of[gid]].along * p->run.length;
 }
@@ -142,7 +150,8 @@ int lattice_places_beside(const struct lattice_places *p, int run, int axis, int
     return -1;
 }
 
-int64_t lattice_places_neighbour(const struct lattice_places *p, const struct lattice_cells *cells, int64_t gid, int face)
+int64_t lattice_places_neighbour(
+    const struct lattice_places *p, const struct lattice_cells *cells, int64_t gid, int face)
 {
     int run = p->run_of[gid], axis = face / 2, step = face % 2 ? 1 : -1;
     int lane = lattice_places_lane(p, cells, gid), n = p->run.length;

@@ -12,7 +12,8 @@
 
 typedef double row[LATTICE_V]; /* of v and w of a cell, or their rates */
 
-/* A kind's mass [kg] and inertia [kg m2], what makes a force of m times a rate [1], [1/m], and h^2 [m2]. */
+/* A kind's mass [kg] and inertia [kg m2], what makes a force of m times a rate [1], [1/m], and h^2
+ * [m2]. */
 struct weight {
     row mass, force;
     double face;
@@ -26,7 +27,8 @@ struct lattice_relax {
     double *alpha;         /* [n_material] all the same [1/s] */
     double end;            /* [s] */
     double f, g;           /* of half a step's kick, lattice_state.h */
-    double motion, power;  /* of the first state: v.m v [J], v.m a [W], with the v of the step that follows */
+    /* of the first state: v.m v [J], v.m a [W], with the v of the step that follows */
+    double motion, power;
     struct lattice_rest rest;
 };
 
@@ -52,14 +54,16 @@ static void set_damping(struct lattice_relax *r, double alpha)
     r->rest.alpha = alpha;
     for (int m = 0; m < l->options.n_material; m++) r->alpha[m] = alpha;
     int n_kick = (l->scheme->n + 2) * r->cells->n_kind;
-    double *table = lattice_features_kicks(r->cells, &l->options), *end_only = table + l->scheme->n * r->cells->n_kind * KICK_WIDTH;
+    double *table = lattice_features_kicks(r->cells, &l->options),
+           *end_only = table + l->scheme->n * r->cells->n_kind * KICK_WIDTH;
     r->f = end_only[0];
     r->g = end_only[1];
     lattice_put(l, &l->kick, l->features.real_is_float, table, (int64_t)n_kick * KICK_WIDTH);
     free(table);
 }
 
-struct lattice_relax *lattice_relax_create(struct lattice *l, const struct lattice_cells *cells, double end)
+struct lattice_relax *lattice_relax_create(
+    struct lattice *l, const struct lattice_cells *cells, double end)
 {
     struct lattice_relax *r = fail_alloc(sizeof *r);
     r->l = l;
@@ -87,13 +91,16 @@ static const struct weight *weight_of(const struct lattice_relax *r, int64_t k)
     return &r->weight[r->cells->kind_of[r->l->layout->gid[k]]];
 }
 
-/* Of this rank's cells [n_owned]: velocities of half a step ago, and the accelerations of the observed state, v_now = f v_before + g a. */
+/* Of this rank's cells [n_owned]: velocities of half a step ago, and the accelerations of the
+ * observed state, v_now = f v_before + g a. */
 static void read_state(const struct lattice_relax *r, row *before, row *a)
 {
     struct lattice *l = r->l;
     for (int c = 0; c < LATTICE_V; c++) {
-        double *old = lattice_read_plane(l, &l->v, l->features.real_is_float, (int64_t)l->v_set * LATTICE_V + c);
-        double *now = lattice_read_plane(l, &l->v, l->features.real_is_float, (int64_t)l->v_observed * LATTICE_V + c);
+        double *old = lattice_read_plane(
+            l, &l->v, l->features.real_is_float, (int64_t)l->v_set * LATTICE_V + c);
+        double *now = lattice_read_plane(
+            l, &l->v, l->features.real_is_float, (int64_t)l->v_observed * LATTICE_V + c);
         for (int64_t k = 0; k < l->layout->n_owned; k++) {
             before[k][c] = old[k];
             a[k][c] = (now[k] - r->f * old[k]) / r->g;
@@ -117,7 +124,9 @@ static double dot(const struct lattice_relax *r, const row *x, const row *y)
     comm_max_f64(r->l->comm, most, 3);
     if (!(most[1] > 0) || !(most[2] > 0)) return 0;
     for (int64_t k = 0; k < r->l->layout->n_owned; k++)
-        for (int c = 0; c < LATTICE_V; c++) sums_add(&sum, weight_of(r, k)->mass[c] / most[0] * (x[k][c] / most[1]) * (y[k][c] / most[2]));
+        for (int c = 0; c < LATTICE_V; c++)
+            sums_add(&sum,
+                weight_of(r, k)->mass[c] / most[0] * (x[k][c] / most[1]) * (y[k][c] / most[2]));
     integer_sums_all(r->l->comm, &sum, 1, &value);
     return value * most[0] * most[1] * most[2];
 }
@@ -128,7 +137,8 @@ void lattice_relax_first(struct lattice_relax *r)
     row *v = fail_alloc(n * sizeof *v), *a = fail_alloc(n * sizeof *a);
     read_state(r, v, a);
     for (size_t k = 0; k < n; k++)
-        for (int c = 0; c < LATTICE_V; c++) v[k][c] = r->f * (r->f * v[k][c] + r->g * a[k][c]) + r->g * a[k][c];
+        for (int c = 0; c < LATTICE_V; c++)
+            v[k][c] = r->f * (r->f * v[k][c] + r->g * a[k][c]) + r->g * a[k][c];
     r->motion = dot(r, v, v);
     r->power = dot(r, v, a);
     free(v);
@@ -141,7 +151,8 @@ static bool loads_are_last(const struct lattice_relax *r)
     const struct lattice *l = r->l;
     if (!l->features.loads) return true;
     size_t n = (size_t)l->options.n_row * LOAD_WIDTH;
-    double *now = fail_alloc(n * sizeof *now), *last = fail_alloc(n * sizeof *last), t = (double)l->step * l->options.dt;
+    double *now = fail_alloc(n * sizeof *now), *last = fail_alloc(n * sizeof *last),
+           t = (double)l->step * l->options.dt;
     l->options.rows_at(l->options.context, t, t, t, now);
     l->options.rows_at(l->options.context, r->end, r->end, r->end, last);
     bool same = !memcmp(now, last, n * sizeof *now);
@@ -191,7 +202,8 @@ bool lattice_relax_second(struct lattice_relax *r, double tolerance)
 
 void lattice_relax_note(const struct lattice_relax *r, double note[LATTICE_RELAX_NOTES])
 {
-    const double all[LATTICE_RELAX_NOTES] = {r->rest.alpha, r->rest.left, r->rest.scale, r->motion, r->power};
+    const double all[LATTICE_RELAX_NOTES] = {
+        r->rest.alpha, r->rest.left, r->rest.scale, r->motion, r->power};
     memcpy(note, all, sizeof all);
 }
 

@@ -32,27 +32,34 @@ void lattice_restore_columns(struct sim *s, struct sheet *t)
     const struct lattice *l = s->lattice->lattice;
     size_t n = (size_t)l->layout->n_owned;
     if (has_before(l)) {
-        struct lattice_motion m = {.v = sheet_keep(t, fail_alloc(n * sizeof *m.v)), .w = sheet_keep(t, fail_alloc(n * sizeof *m.w))};
+        struct lattice_motion m = {.v = sheet_keep(t, fail_alloc(n * sizeof *m.v)),
+            .w = sheet_keep(t, fail_alloc(n * sizeof *m.w))};
         lattice_read_before(l, &m);
-        sheet_add(t, "velocity_before", "m/s", "before the kick that ends the step", COLUMN_F64, 3, m.v);
+        sheet_add(
+            t, "velocity_before", "m/s", "before the kick that ends the step", COLUMN_F64, 3, m.v);
         sheet_add(t, "angular_velocity_before", "rad/s", "likewise", COLUMN_F64, 3, m.w);
     }
     if (!l->features.energy) return;
-    sheet_add(t, "ledger", "J", "see kernels/lattice/lattice_work.h", COLUMN_F64, LATTICE_LEDGER, sheet_keep(t, read_ledger(l)));
+    sheet_add(t, "ledger", "J", "see kernels/lattice/lattice_work.h", COLUMN_F64, LATTICE_LEDGER,
+        sheet_keep(t, read_ledger(l)));
     if (!l->breakage) return;
     int32_t *fresh = sheet_keep(t, fail_alloc(n * sizeof *fresh));
     double *released = sheet_keep(t, fail_alloc(n * sizeof *released));
     lattice_break_read_release(l->breakage, fresh, released);
-    sheet_add(t, "fresh", "1", "links that went with the last step, see kernels/lattice/link_release.cl", COLUMN_I32, 1, fresh);
+    sheet_add(t, "fresh", "1",
+        "links that went with the last step, see kernels/lattice/link_release.cl", COLUMN_I32, 1,
+        fresh);
     sheet_add(t, "released", "J", "by links that broke", COLUMN_F64, 1, released);
 }
 
 /* The numbers of the table `totals`, in this order. */
 struct totals {
     struct lattice_energy start;
-    double opened[LATTICE_ENERGY_OPENED], relax[LATTICE_RELAX_NOTES], rest_next, rest_reached, rest_left, rest_damping;
+    double opened[LATTICE_ENERGY_OPENED], relax[LATTICE_RELAX_NOTES], rest_next, rest_reached,
+        rest_left, rest_damping;
 };
-_Static_assert(sizeof(struct totals) == LATTICE_RESTORE_TOTALS * sizeof(double), "numbers and nothing else");
+_Static_assert(
+    sizeof(struct totals) == LATTICE_RESTORE_TOTALS * sizeof(double), "numbers and nothing else");
 
 double *lattice_restore_totals(const struct sim *s)
 {
@@ -92,8 +99,10 @@ bool lattice_restore_energy(const struct sim *s, bool asked)
 {
     bool has = h5_has(s->from->reader, "cells", "ledger");
     if (asked && !has)
-        fail_stop_together(
-            EXIT_SCENE, "a measure of energy cannot begin in a run that goes on: '%s' has nothing of what it was until then", s->from->path);
+        fail_stop_together(EXIT_SCENE,
+            "a measure of energy cannot begin in a run that goes on: '%s' has nothing of what it "
+            "was until then",
+            s->from->path);
     return has;
 }
 
@@ -108,14 +117,18 @@ static struct frame_table read_cells(const struct sim *s)
         enum column_type type;
         int width;
         bool there;
-    } column[] = {{"id", COLUMN_I64, 1, true}, {"displacement", COLUMN_F64, 3, true}, {"rotation", COLUMN_F64, 4, true},
-        {"velocity", COLUMN_F64, 3, true}, {"angular_velocity", COLUMN_F64, 3, true}, {"links", COLUMN_I32, 1, breakage},
-        {"fate", COLUMN_I32, 1, breakage}, {"velocity_before", COLUMN_F64, 3, before}, {"angular_velocity_before", COLUMN_F64, 3, before},
-        {"ledger", COLUMN_F64, LATTICE_LEDGER, energy}, {"fresh", COLUMN_I32, 1, energy && breakage},
+    } column[] = {{"id", COLUMN_I64, 1, true}, {"displacement", COLUMN_F64, 3, true},
+        {"rotation", COLUMN_F64, 4, true}, {"velocity", COLUMN_F64, 3, true},
+        {"angular_velocity", COLUMN_F64, 3, true}, {"links", COLUMN_I32, 1, breakage},
+        {"fate", COLUMN_I32, 1, breakage}, {"velocity_before", COLUMN_F64, 3, before},
+        {"angular_velocity_before", COLUMN_F64, 3, before},
+        {"ledger", COLUMN_F64, LATTICE_LEDGER, energy},
+        {"fresh", COLUMN_I32, 1, energy && breakage},
         {"released", COLUMN_F64, 1, energy && breakage}};
     struct frame_table t = frame_table_begin(s->comm, reader, "cells", "id");
     for (size_t k = 0; k < sizeof column / sizeof *column; k++)
-        if (column[k].there) frame_table_add(&t, s->comm, reader, column[k].name, column[k].type, column[k].width);
+        if (column[k].there)
+            frame_table_add(&t, s->comm, reader, column[k].name, column[k].type, column[k].width);
     return t;
 }
 
@@ -140,7 +153,9 @@ static void sort_rows(struct frame_table *t, const struct lattice_layout *c, con
     for (int k = 0; k < t->n_column; k++) {
         size_t bytes = (size_t)t->column[k].width * column_type_size(t->column[k].type);
         char *sorted = fail_alloc((size_t)t->n * bytes);
-        for (int64_t i = 0; i < t->n; i++) memcpy(sorted + (size_t)to[i] * bytes, (const char *)t->column[k].data + (size_t)i * bytes, bytes);
+        for (int64_t i = 0; i < t->n; i++)
+            memcpy(sorted + (size_t)to[i] * bytes,
+                (const char *)t->column[k].data + (size_t)i * bytes, bytes);
         free(t->column[k].data);
         t->column[k].data = sorted;
     }
@@ -151,14 +166,16 @@ static void sort_rows(struct frame_table *t, const struct lattice_layout *c, con
 static void write_motion(struct sim *s, const struct frame_table *t)
 {
     struct lattice *l = s->lattice->lattice;
-    double(*turn)[4] = frame_table_get(t, "rotation"), (*theta)[3] = fail_alloc((size_t)t->n * sizeof *theta);
+    double(*turn)[4] = frame_table_get(t, "rotation"),
+    (*theta)[3] = fail_alloc((size_t)t->n * sizeof *theta);
     for (int64_t i = 0; i < t->n; i++) memcpy(theta[i], turn[i], sizeof *theta);
     struct lattice_motion m = {.u = frame_table_get(t, "displacement"),
         .theta = theta,
         .q = turn,
         .v = frame_table_get(t, "velocity"),
         .w = frame_table_get(t, "angular_velocity")};
-    struct lattice_motion before = {.v = frame_table_get(t, "velocity_before"), .w = frame_table_get(t, "angular_velocity_before")};
+    struct lattice_motion before = {.v = frame_table_get(t, "velocity_before"),
+        .w = frame_table_get(t, "angular_velocity_before")};
     lattice_write_observed(l, s->from->step, &m, &before);
     free(theta);
 }
@@ -167,7 +184,8 @@ void lattice_restore_cells(struct sim *s)
 {
     struct lattice *l = s->lattice->lattice;
     struct frame_table t = read_cells(s);
-    int32_t *owner = frame_table_owners(s->comm, l->layout->gid, l->layout->n_owned, s->n_first), *to = fail_alloc((size_t)t.n * sizeof *to);
+    int32_t *owner = frame_table_owners(s->comm, l->layout->gid, l->layout->n_owned, s->n_first),
+            *to = fail_alloc((size_t)t.n * sizeof *to);
     const int64_t *id = frame_table_get(&t, "id");
     for (int64_t i = 0; i < t.n; i++) to[i] = owner[id[i]];
     frame_table_send(&t, s->comm, to, 1);
@@ -175,10 +193,14 @@ void lattice_restore_cells(struct sim *s)
     free(owner);
     sort_rows(&t, l->layout, s->from->path);
     write_motion(s, &t);
-    if (l->breakage) lattice_break_write(l->breakage, frame_table_get(&t, "links"), frame_table_get(&t, "fate"));
+    if (l->breakage)
+        lattice_break_write(l->breakage, frame_table_get(&t, "links"), frame_table_get(&t, "fate"));
     const double *ledger = frame_table_get(&t, "ledger");
-    for (int k = 0; k < LATTICE_LEDGER && ledger; k++) lattice_write_plane(l, &l->ledger, false, k, ledger + k, LATTICE_LEDGER);
-    if (l->breakage && ledger) lattice_break_write_release(l->breakage, frame_table_get(&t, "fresh"), frame_table_get(&t, "released"));
+    for (int k = 0; k < LATTICE_LEDGER && ledger; k++)
+        lattice_write_plane(l, &l->ledger, false, k, ledger + k, LATTICE_LEDGER);
+    if (l->breakage && ledger)
+        lattice_break_write_release(
+            l->breakage, frame_table_get(&t, "fresh"), frame_table_get(&t, "released"));
     frame_table_free(&t);
 }
 

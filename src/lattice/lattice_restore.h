@@ -1,11 +1,15 @@
-/* The lattice's state into frames, besides what a picture has of it, and back: on any owners, cell by cell. */
+/* The lattice's state into frames, besides what a picture has of it, and back: on any owners, cell
+ * by cell. */
 #ifndef DEMOCLES_LATTICE_RESTORE_H
 #define DEMOCLES_LATTICE_RESTORE_H
 
 #include "lattice_method.h"
 #include "results/sheet.h"
 
-enum { LATTICE_RESTORE_TOTALS = sizeof(struct lattice_energy) / sizeof(double) + LATTICE_ENERGY_OPENED + LATTICE_RELAX_NOTES + 4 };
+enum {
+    LATTICE_RESTORE_TOTALS = sizeof(struct lattice_energy) / sizeof(double) +
+                             LATTICE_ENERGY_OPENED + LATTICE_RELAX_NOTES + 4
+};
 
 /* Adds what the next step depends on to the table of cells; rows in ascending id. */
 void lattice_restore_columns(struct sim *s, struct sheet *sheet);
@@ -14,9 +18,11 @@ double *lattice_restore_totals(const struct sim *s);
 
 /* Checksum of cells and loads, as the scene makes them. */
 int64_t lattice_restore_inputs(const struct sim *s);
-/* Whether the frame s->from has an account of energy, which then goes on; one that is asked for and is not there ends the run. Collective. */
+/* Whether the frame s->from has an account of energy, which then goes on; one that is asked for and
+ * is not there ends the run. Collective. */
 bool lattice_restore_energy(const struct sim *s, bool asked);
-/* Cells from the frame, once the lattice is there; then the rest, once the account and what leads to rest are. Collective. */
+/* Cells from the frame, once the lattice is there; then the rest, once the account and what leads
+ * to rest are. Collective. */
 void lattice_restore_cells(struct sim *s);
 void lattice_restore_run(struct sim *s);
 

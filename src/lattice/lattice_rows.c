@@ -1,4 +1,5 @@
-/* Rows of loads on their way to the device. The compute queue is in order, so one copy there is enough; on the host several may wait. */
+/* Rows of loads on their way to the device. The compute queue is in order, so one copy there is
+ * enough; on the host several may wait. */
 #include "lattice.h"
 
 #include <stdlib.h>
@@ -16,7 +17,8 @@ void lattice_rows_create(struct lattice *l)
     if (!l->features.loads) return;
     l->rows.value = fail_alloc(count(l) * sizeof *l->rows.value);
     l->rows.last = fail_alloc(count(l) * sizeof *l->rows.last);
-    for (int k = 0; k < LATTICE_SLOTS; k++) l->rows.host[k] = fail_alloc(count(l) * lattice_v_bytes(l));
+    for (int k = 0; k < LATTICE_SLOTS; k++)
+        l->rows.host[k] = fail_alloc(count(l) * lattice_v_bytes(l));
     buffer_init(&l->rows.buffer, "lattice loads");
     buffer_reserve(l->dev, &l->rows.buffer, count(l) * lattice_v_bytes(l));
 }
@@ -46,12 +48,14 @@ void lattice_rows_send(struct lattice *l, double t, double from, double to)
     if (!l->features.loads) return;
     size_t n = count(l);
     l->options.rows_at(l->options.context, t, from, to, l->rows.value);
-    if (l->rows.n_sent > 0 && !memcmp(l->rows.value, l->rows.last, n * sizeof *l->rows.value)) return;
+    if (l->rows.n_sent > 0 && !memcmp(l->rows.value, l->rows.last, n * sizeof *l->rows.value))
+        return;
     memcpy(l->rows.last, l->rows.value, n * sizeof *l->rows.value);
     int slot = (int)(l->rows.n_sent++ % LATTICE_SLOTS);
     settle(l, slot);
     if (l->features.real_is_float)
         for (size_t i = 0; i < n; i++) ((float *)l->rows.host[slot])[i] = (float)l->rows.value[i];
     else memcpy(l->rows.host[slot], l->rows.value, n * sizeof *l->rows.value);
-    buffer_write_begin(l->dev, l->dev->compute, &l->rows.buffer, 0, n * lattice_v_bytes(l), l->rows.host[slot], 0, NULL, &l->rows.sent[slot]);
+    buffer_write_begin(l->dev, l->dev->compute, &l->rows.buffer, 0, n * lattice_v_bytes(l),
+        l->rows.host[slot], 0, NULL, &l->rows.sent[slot]);
 }

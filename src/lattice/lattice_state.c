@@ -7,7 +7,8 @@
 #include "results/digest.h"
 #include "comm/fail.h"
 
-double *lattice_read_plane(const struct lattice *l, const struct buffer *buffer, bool is_float, int64_t number)
+double *lattice_read_plane(
+    const struct lattice *l, const struct buffer *buffer, bool is_float, int64_t number)
 {
     int64_t n = l->layout->plane;
     size_t bytes = is_float ? sizeof(float) : sizeof(double);
@@ -22,7 +23,8 @@ double *lattice_read_plane(const struct lattice *l, const struct buffer *buffer,
     return value;
 }
 
-void lattice_write_plane(struct lattice *l, struct buffer *buffer, bool is_float, int64_t number, const double *value, int width)
+void lattice_write_plane(struct lattice *l, struct buffer *buffer, bool is_float, int64_t number,
+    const double *value, int width)
 {
     int64_t n = l->layout->plane;
     size_t bytes = is_float ? sizeof(float) : sizeof(double);
@@ -48,7 +50,8 @@ static int parts(const struct lattice *l, const struct lattice_motion *m, struct
 {
     part[0] = (struct part){m->u ? m->u[0] : NULL, 3, 0, true};
     part[1] = (struct part){m->v ? m->v[0] : NULL, 3, 0, false};
-    part[2] = l->features.turn ? (struct part){m->q ? m->q[0] : NULL, 4, 3, true} : (struct part){m->theta ? m->theta[0] : NULL, 3, 3, true};
+    part[2] = l->features.turn ? (struct part){m->q ? m->q[0] : NULL, 4, 3, true}
+                               : (struct part){m->theta ? m->theta[0] : NULL, 3, 3, true};
     part[3] = (struct part){m->w ? m->w[0] : NULL, 3, 3, false};
     return 4;
 }
@@ -59,10 +62,14 @@ void lattice_read(const struct lattice *l, const struct lattice_motion *m)
     int n = parts(l, m, part);
     for (int p = 0; p < n; p++)
         for (int a = 0; a < part[p].width && part[p].value; a++) {
-            int64_t set = part[p].is_x ? l->x_observed * LATTICE_X(l->features.turn) : l->v_observed * LATTICE_V;
-            bool is_float = part[p].is_x ? l->features.position_is_float : l->features.real_is_float;
-            double *plane = lattice_read_plane(l, part[p].is_x ? &l->x : &l->v, is_float, set + part[p].first + a);
-            for (int64_t k = 0; k < l->layout->n_owned; k++) part[p].value[k * part[p].width + a] = plane[k];
+            int64_t set = part[p].is_x ? l->x_observed * LATTICE_X(l->features.turn)
+                                       : l->v_observed * LATTICE_V;
+            bool is_float =
+                part[p].is_x ? l->features.position_is_float : l->features.real_is_float;
+            double *plane = lattice_read_plane(
+                l, part[p].is_x ? &l->x : &l->v, is_float, set + part[p].first + a);
+            for (int64_t k = 0; k < l->layout->n_owned; k++)
+                part[p].value[k * part[p].width + a] = plane[k];
             free(plane);
         }
 }
@@ -74,8 +81,10 @@ static void write_set(struct lattice *l, const struct lattice_motion *m, int set
     int n = parts(l, m, part);
     for (int p = 0; p < n; p++)
         for (int a = 0; a < part[p].width && part[p].value; a++) {
-            int64_t number = set * (part[p].is_x ? LATTICE_X(l->features.turn) : LATTICE_V) + part[p].first + a;
-            lattice_write_plane(l, part[p].is_x ? &l->x : &l->v, part[p].is_x ? l->features.position_is_float : l->features.real_is_float, number,
+            int64_t number =
+                set * (part[p].is_x ? LATTICE_X(l->features.turn) : LATTICE_V) + part[p].first + a;
+            lattice_write_plane(l, part[p].is_x ? &l->x : &l->v,
+                part[p].is_x ? l->features.position_is_float : l->features.real_is_float, number,
                 part[p].value + a, part[p].width);
         }
 }
@@ -88,7 +97,8 @@ void lattice_write(struct lattice *l, const struct lattice_motion *m)
     write_set(l, m, 0);
 }
 
-void lattice_write_observed(struct lattice *l, int64_t step, const struct lattice_motion *m, const struct lattice_motion *before)
+void lattice_write_observed(struct lattice *l, int64_t step, const struct lattice_motion *m,
+    const struct lattice_motion *before)
 {
     lattice_write(l, m);
     l->step = step;
@@ -109,14 +119,16 @@ void lattice_read_before(const struct lattice *l, const struct lattice_motion *m
 int64_t lattice_digest(const struct lattice *l, uint64_t *digest)
 {
     size_t n = (size_t)l->layout->n_owned;
-    struct lattice_motion m = {fail_alloc(n * sizeof *m.u), fail_alloc(n * sizeof *m.theta), fail_alloc(n * sizeof *m.q), fail_alloc(n * sizeof *m.v),
-        fail_alloc(n * sizeof *m.w)};
+    struct lattice_motion m = {fail_alloc(n * sizeof *m.u), fail_alloc(n * sizeof *m.theta),
+        fail_alloc(n * sizeof *m.q), fail_alloc(n * sizeof *m.v), fail_alloc(n * sizeof *m.w)};
     struct digest_part digests[4];
     struct part part[4];
     int n_part = parts(l, &m, part);
     lattice_read(l, &m);
-    for (int p = 0; p < n_part; p++) digests[p] = (struct digest_part){part[p].value, 0, part[p].width, part[p].width};
-    int64_t n_nan = digest_of_all(l->comm, l->layout->gid, l->layout->n_owned, digests, n_part, digest);
+    for (int p = 0; p < n_part; p++)
+        digests[p] = (struct digest_part){part[p].value, 0, part[p].width, part[p].width};
+    int64_t n_nan =
+        digest_of_all(l->comm, l->layout->gid, l->layout->n_owned, digests, n_part, digest);
     free(m.u);
     free(m.theta);
     free(m.q);

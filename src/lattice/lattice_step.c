@@ -1,4 +1,5 @@
-/* One step of the lattice: the same exchange before each evaluation of the forces. The host only enqueues, except where it moves messages. */
+/* One step of the lattice: the same exchange before each evaluation of the forces. The host only
+ * enqueues, except where it moves messages. */
 #include "lattice.h"
 
 #include "kernels/lattice/lattice_words.h"
@@ -54,8 +55,9 @@ static void evaluate(struct lattice *l, int x_in, int x_out, int v_in, int v_out
     trace_part(l->dev->trace, NULL);
 }
 
-/* Breakage, from the state at the step's start, with the ghosts and pressures of the step's first evaluation where that is of this state. Links are
- * gone with the step's end: all its evaluations see the same ones. */
+/* Breakage, from the state at the step's start, with the ghosts and pressures of the step's first
+ * evaluation where that is of this state. Links are gone with the step's end: all its evaluations
+ * see the same ones. */
 static void judge(struct lattice *l, int x_in, int v_in)
 {
     if (l->breakage) lattice_break_judge(l->breakage, x_at(l, x_in), v_at(l, v_in));
@@ -68,14 +70,20 @@ static void part(struct lattice *l)
 /* Kicks that an evaluation enters in the ledger (kernels/lattice/lattice_work.h). */
 enum { COUNT_END = 1, COUNT_BEGIN = 2 };
 
-/* One evaluation of a splitting. k: row of the table of kicks; the first evaluation's drift is left out if only its first kick is meant. */
+/* One evaluation of a splitting. k: row of the table of kicks; the first evaluation's drift is left
+ * out if only its first kick is meant. */
 static void split(struct lattice *l, int k, const struct lattice_op *op, double at, bool observe)
 {
-    double dt = l->options.dt, t = ((double)l->step + at) * dt, drift = observe ? 0 : op->drift * dt;
+    double dt = l->options.dt, t = ((double)l->step + at) * dt,
+           drift = observe ? 0 : op->drift * dt;
     int x_out = 1 - l->x_set, v_out = observe || l->features.link_damping ? 1 - l->v_set : l->v_set;
     launch_set_int(l->force, "at_kick", k * l->n_kind * KICK_WIDTH);
     launch_set_real(l->force, "drift", drift);
-    if (l->features.energy) launch_set_int(l->force, "count", observe ? COUNT_END : k == 0 && l->counted ? COUNT_BEGIN : COUNT_END | COUNT_BEGIN);
+    if (l->features.energy)
+        launch_set_int(l->force, "count",
+            observe                ? COUNT_END
+            : k == 0 && l->counted ? COUNT_BEGIN
+                                   : COUNT_END | COUNT_BEGIN);
     l->counted = observe;
     lattice_rows_send(l, t, t, t + drift);
     evaluate(l, l->x_set, x_out, l->v_set, v_out);
@@ -136,7 +144,8 @@ static void rk_step(struct lattice *l)
         }
         launch_set_int(l->force, "is_first", k == 0);
         launch_set_int(l->force, "is_last", k == s->n - 1);
-        double next = ((double)l->step + (k + 1 < s->n ? s->rk[k + 1].at : 1)) * dt; /* neighbours read velocities as this stage leaves them */
+        /* neighbours read velocities as this stage leaves them */
+        double next = ((double)l->step + (k + 1 < s->n ? s->rk[k + 1].at : 1)) * dt;
         lattice_rows_send(l, t, next, next);
         evaluate(l, in, out, in, out);
         if (k == 0) judge(l, in, in);

@@ -47,7 +47,8 @@ void lattice_stress_run(struct lattice_stress *s, double (*stress)[9], double *v
     struct lattice *l = s->l;
     lattice_observed_refresh(l, true);
     lattice_observed_bind(l, s->launch);
-    launch_run(s->launch, l->dev->compute, (int64_t)l->layout->n_force * l->layout->run, 0, NULL, NULL);
+    launch_run(
+        s->launch, l->dev->compute, (int64_t)l->layout->n_force * l->layout->run, 0, NULL, NULL);
     for (int p = 0; p < N_PLANE; p++) {
         if (p == VON_MISES ? !von_mises : !stress) continue;
         double *value = lattice_read_plane(l, &s->stress, l->features.real_is_float, p);

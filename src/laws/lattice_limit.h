@@ -1,13 +1,16 @@
-/* How large the time step of the lattice may be: w_max, the largest frequency of the body, and w_max dt of each scheme. Rigorous: never too large.
- * Host only; knows no scene and no device.
+/* How large the time step of the lattice may be: w_max, the largest frequency of the body, and
+ * w_max dt of each scheme. Rigorous: never too large. Host only; knows no scene and no device.
  *
- * One material without wall links, any shape (free surfaces, holes, broken links and fixed DOF only lower w_max):
- *     w_max^2 = 28 G/(rho h^2) up to lambda/G = 4.4305 (nu 0.408), 3 (lambda + 2 G)^2/(lambda rho h^2) above; LINK_SEED 72 E/(rho h^2)
- * from a scan of the Brillouin zone. Several materials, or walls: the largest of these is not safe (one soft cell among stiff ones has up to 1.4
- * times its own). There, for any positive vector z,
+ * One material without wall links, any shape (free surfaces, holes, broken links and fixed DOF only
+ * lower w_max):
+ *     w_max^2 = 28 G/(rho h^2) up to lambda/G = 4.4305 (nu 0.408), 3 (lambda + 2 G)^2/(lambda rho
+ *       h^2) above; LINK_SEED 72 E/(rho h^2)
+ * from a scan of the Brillouin zone. Several materials, or walls: the largest of these is not safe
+ * (one soft cell among stiff ones has up to 1.4 times its own). There, for any positive vector z,
  *     w_max^2 <= max over the DOF k of (B z)_k/z_k,  B = M^-1 |K|
- * (Collatz and Wielandt), |K| entry by entry: the 6 x 6 diagonal blocks assembled with signs first, the volumetric part as |T|^T |D| |T|, Th = T u.
- * Replacing z by B z never raises the bound. A link that breaks later does not raise w_max. */
+ * (Collatz and Wielandt), |K| entry by entry: the 6 x 6 diagonal blocks assembled with signs first,
+ * the volumetric part as |T|^T |D| |T|, Th = T u. Replacing z by B z never raises the bound. A link
+ * that breaks later does not raise w_max. */
 #ifndef DEMOCLES_LATTICE_LIMIT_H
 #define DEMOCLES_LATTICE_LIMIT_H
 
@@ -17,9 +20,11 @@
 
 enum lattice_scheme { LATTICE_LEAPFROG, LATTICE_RK4, LATTICE_RKN4, LATTICE_PEFRL, LATTICE_VEFRL };
 
-/* Largest w_max dt [1] of the scheme; zeta: damping ratio of the links at w_max, eta w_max/2 with the largest eta of the body. 0: the scheme does not
- * take damping of links (RKN4 has no stage for it; PEFRL and VEFRL have steps back in time, which it blows up). Leapfrog: damping forces from the
- * velocity of the half step before. Mass-proportional damping as an exact factor has no limit. */
+/* Largest w_max dt [1] of the scheme; zeta: damping ratio of the links at w_max, eta w_max/2 with
+ * the largest eta of the body. 0: the scheme does not take damping of links (RKN4 has no stage for
+ * it; PEFRL and VEFRL have steps back in time, which it blows up). Leapfrog: damping forces from
+ * the velocity of the half step before. Mass-proportional damping as an exact factor has no
+ * limit. */
 double lattice_limit_factor(enum lattice_scheme scheme, double zeta);
 
 /* w_max [rad/s] of one material. */
@@ -30,24 +35,29 @@ struct lattice_body {
     enum link_set set;
     double h; /* [m] */
     int n;
-    const int (*neighbour)[6];             /* [n][6]: cell over the face -x, +x, -y, +y, -z, +z, or -1 */
-    const uint8_t *links;                  /* [n]: bits of faces with a link, in this order; NULL: where there is a neighbour */
-    const uint8_t *walls;                  /* [n]: bits of faces without neighbour that a link joins to a rigid wall; NULL: none */
+    /* [n][6]: cell over the face -x, +x, -y, +y, -z, +z, or -1 */
+    const int (*neighbour)[6];
+    /* [n]: bits of faces with a link, in this order; NULL: where there is a neighbour */
+    const uint8_t *links;
+    /* [n]: bits of faces without neighbour that a link joins to a rigid wall; NULL: none */
+    const uint8_t *walls;
     const uint8_t *material;               /* [all]: row of the table */
     const struct link_material *materials; /* [n_material] */
     int n_material;
 };
 
-/* w_max [rad/s]: lattice_limit_uniform if that is right for the body, else the bound after `rounds` rounds (30 come within a few per cent of where it
- * goes). All neighbours must be in 0 to n - 1. */
+/* w_max [rad/s]: lattice_limit_uniform if that is right for the body, else the bound after `rounds`
+ * rounds (30 come within a few per cent of where it goes). All neighbours must be in 0 to n - 1. */
 double lattice_limit_body(const struct lattice_body *body, int rounds);
 
-/* One round in two parts, for a body on several ranks: the caller brings in z, and then s, of the cells beyond n. z [all][6], in the order
- * u_x u_y u_z theta_x theta_y theta_z; any positive values, lattice_limit_start is a good start. */
+/* One round in two parts, for a body on several ranks: the caller brings in z, and then s, of the
+ * cells beyond n. z [all][6], in the order u_x u_y u_z theta_x theta_y theta_z; any positive
+ * values, lattice_limit_start is a good start. */
 void lattice_limit_start(const struct lattice_body *body, double (*z)[6]);
 /* s [all] of cells 0 to n - 1: |D| |T| z. */
 void lattice_limit_volume(const struct lattice_body *body, const double (*z)[6], double *s);
 /* Bz = B z of cells 0 to n - 1; returns their largest (B z)_k/z_k [1/s2]. */
-double lattice_limit_round(const struct lattice_body *body, const double (*z)[6], const double *s, double (*Bz)[6]);
+double lattice_limit_round(
+    const struct lattice_body *body, const double (*z)[6], const double *s, double (*Bz)[6]);
 
 #endif

@@ -7,9 +7,13 @@ const char *link_constants_refusal(enum link_set set, struct link_material m)
 {
     if (!(m.density > 0) || !isfinite(m.density)) return "density must be above 0";
     if (!(m.young > 0) || !isfinite(m.young)) return "young must be above 0";
-    if (!(m.poisson > -1 && m.poisson < 0.5)) return "poisson must lie between -1 and 0.5, both excluded: beyond, no elastic solid is stable";
-    if (!(m.damping >= 0) || !isfinite(m.damping)) return "the damping of links must not be below 0";
-    if (set == LINK_SEED && (m.poisson < 0 || m.poisson > 0)) return "poisson must be 0: pair springs without volumetric term have no other";
+    if (!(m.poisson > -1 && m.poisson < 0.5))
+        return "poisson must lie between -1 and 0.5, both excluded: beyond, no elastic solid is "
+               "stable";
+    if (!(m.damping >= 0) || !isfinite(m.damping))
+        return "the damping of links must not be below 0";
+    if (set == LINK_SEED && (m.poisson < 0 || m.poisson > 0))
+        return "poisson must be 0: pair springs without volumetric term have no other";
     return NULL;
 }
 
@@ -40,10 +44,12 @@ static double series(double a, double b)
     return a == b ? a : 2 * a * b / (a + b);
 }
 
-struct link_stiffness link_constants_between(enum link_set set, struct link_material i, struct link_material j, double h)
+struct link_stiffness link_constants_between(
+    enum link_set set, struct link_material i, struct link_material j, double h)
 {
     struct link_stiffness a = own(set, i, h), b = own(set, j, h), k;
-    double m_i = link_constants_lambda(set, i) + a.kn / h, m_j = link_constants_lambda(set, j) + b.kn / h;
+    double m_i = link_constants_lambda(set, i) + a.kn / h,
+           m_j = link_constants_lambda(set, j) + b.kn / h;
     k.r_i = 2 * m_j / (m_i + m_j);
     k.r_j = 2 * m_i / (m_i + m_j);
     k.ks = series(a.ks, b.ks);
@@ -89,15 +95,18 @@ double link_constants_inertia(struct link_material m, double h)
 
 struct link_strength link_constants_weaker(struct link_strength i, struct link_strength j)
 {
-    bool is_i = i.tension < j.tension || (i.tension <= j.tension && (i.shear < j.shear || (i.shear <= j.shear && i.criterion < j.criterion)));
-    return (struct link_strength){fmin(i.tension, j.tension), fmin(i.shear, j.shear), is_i ? i.criterion : j.criterion};
+    bool is_i = i.tension < j.tension ||
+                (i.tension <= j.tension &&
+                    (i.shear < j.shear || (i.shear <= j.shear && i.criterion < j.criterion)));
+    return (struct link_strength){
+        fmin(i.tension, j.tension), fmin(i.shear, j.shear), is_i ? i.criterion : j.criterion};
 }
 
 struct link_limits link_constants_limits(struct link_strength strength, double h)
 {
     double area = h * h;
-    return (struct link_limits){
-        1 / (area * strength.tension), 1 / (area * strength.shear), 6 / (area * h * strength.tension), 3 / (area * h * strength.shear)};
+    return (struct link_limits){1 / (area * strength.tension), 1 / (area * strength.shear),
+        6 / (area * h * strength.tension), 3 / (area * h * strength.shear)};
 }
 
 double link_constants_tension(struct link_material m, double energy, double h, bool plane_strain)

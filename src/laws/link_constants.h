@@ -1,13 +1,19 @@
-/* Constants of the lattice's links, cells and limits of strength, from materials and the edge h of a cell. Knows no scene and no body; host only.
+/* Constants of the lattice's links, cells and limits of strength, from materials and the edge h of
+ * a cell. Knows no scene and no body; host only.
  *
- * LINK_ISOTROPIC: kn = ks = 2 G h, kt = G h^3/6, kb = E h^3/12, and lambda of each cell: isotropic with the E and nu that are asked for. With nu = 0
+ * LINK_ISOTROPIC: kn = ks = 2 G h, kt = G h^3/6, kb = E h^3/12, and lambda of each cell: isotropic
+ * with the E and nu that are asked for. With nu = 0
  *     everywhere lambda is 0 and the volumetric pass can be left out.
- * LINK_SEED: kn = ks = E h, kt = kb = E h^3, as an earlier solver of this kind has them: nu = 0 only, and EI is too large by 1 + 11/n^2 for n cells
+ * LINK_SEED: kn = ks = E h, kt = kb = E h^3, as an earlier solver of this kind has them: nu = 0
+ * only, and EI is too large by 1 + 11/n^2 for n cells
  *     over the thickness. For comparison with that solver.
  *
- * Different materials: the face between them is the interface, so a link is two halves in series. With M = lambda + 2 G
- *     r_i = 2 M_j/(M_i + M_j), r_j = 2 M_i/(M_i + M_j),  kn = h (G_i r_i^2 + G_j r_j^2),  the others harmonic means
- * which makes uniaxial strain through layers exact. A rigid wall is the limit of an infinitely stiff j. */
+ * Different materials: the face between them is the interface, so a link is two halves in series.
+ * With M = lambda + 2 G
+ *     r_i = 2 M_j/(M_i + M_j), r_j = 2 M_i/(M_i + M_j),  kn = h (G_i r_i^2 + G_j r_j^2),  the
+ *       others harmonic means
+ * which makes uniaxial strain through layers exact. A rigid wall is the limit of an infinitely
+ * stiff j. */
 #ifndef DEMOCLES_LINK_CONSTANTS_H
 #define DEMOCLES_LINK_CONSTANTS_H
 
@@ -48,9 +54,12 @@ const char *link_constants_refusal(enum link_set set, struct link_material m);
 double link_constants_shear(struct link_material m);
 double link_constants_lambda(enum link_set set, struct link_material m);
 
-/* i: the cell at lower coordinates; h [m]. Swapping the materials swaps r_i and r_j and changes nothing else, to the last bit. */
-struct link_stiffness link_constants_between(enum link_set set, struct link_material i, struct link_material j, double h);
-/* Half a link from the cell i to a rigid wall at its upper face; at its lower face r_i and r_j change places. */
+/* i: the cell at lower coordinates; h [m]. Swapping the materials swaps r_i and r_j and changes
+ * nothing else, to the last bit. */
+struct link_stiffness link_constants_between(
+    enum link_set set, struct link_material i, struct link_material j, double h);
+/* Half a link from the cell i to a rigid wall at its upper face; at its lower face r_i and r_j
+ * change places. */
 struct link_stiffness link_constants_wall(enum link_set set, struct link_material i, double h);
 /* Whether kn != ks, kt != kb: what the kernels have flags for (kernels/lattice/law_link.h). */
 bool link_constants_shear_apart(struct link_stiffness k);
@@ -60,13 +69,16 @@ bool link_constants_twist_apart(struct link_stiffness k);
 double link_constants_mass(struct link_material m, double h);
 double link_constants_inertia(struct link_material m, double h);
 
-/* Of a link: the weaker of both, stress by stress, and the criterion of that with the weaker tension (then shear, then of the smaller number). */
+/* Of a link: the weaker of both, stress by stress, and the criterion of that with the weaker
+ * tension (then shear, then of the smaller number). */
 struct link_strength link_constants_weaker(struct link_strength i, struct link_strength j);
-/* Stresses at the edge of the face: f_n/h^2 + 6 mom_b/h^3 against sigma_c, f_s/h^2 + 3 mom_t/h^3 (polar moment h^4/6) against tau_c. */
+/* Stresses at the edge of the face: f_n/h^2 + 6 mom_b/h^3 against sigma_c, f_s/h^2 + 3 mom_t/h^3
+ * (polar moment h^4/6) against tau_c. */
 struct link_limits link_constants_limits(struct link_strength strength, double h);
-/* sigma_c [Pa] for the energy of fracture G_c [J/m2]: a slow crack along the grid then spends G_c per area at any h. The first intact link ahead of
- * a K field carries 0.75 K/sqrt(h) (0.747 to 0.759, nu from 0 to 0.45), so sigma_c = 0.75 sqrt(E' G_c/h) with E' = E in plane stress, E/(1 - nu^2)
- * in plane strain. */
+/* sigma_c [Pa] for the energy of fracture G_c [J/m2]: a slow crack along the grid then spends G_c
+ * per area at any h. The first intact link ahead of a K field carries 0.75 K/sqrt(h) (0.747 to
+ * 0.759, nu from 0 to 0.45), so sigma_c = 0.75 sqrt(E' G_c/h) with E' = E in plane stress, E/(1 -
+ * nu^2) in plane strain. */
 double link_constants_tension(struct link_material m, double energy, double h, bool plane_strain);
 
 #endif

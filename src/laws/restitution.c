@@ -5,8 +5,9 @@
 
 #define PI 3.14159265358979323846
 
-/* acos(z)/sqrt(1-z^2), and acosh(z)/sqrt(z^2-1) beyond z = 1; 1 there. With s = sqrt(|1-z^2|) they are atan2(s, z)/s and asinh(s)/s, which
- * keep all digits near z = 1, where acos and acosh lose half of them. */
+/* acos(z)/sqrt(1-z^2), and acosh(z)/sqrt(z^2-1) beyond z = 1; 1 there. With s = sqrt(|1-z^2|) they
+ * are atan2(s, z)/s and asinh(s)/s, which keep all digits near z = 1, where acos and acosh lose
+ * half of them. */
 static double arc_quotient(double z)
 {
     double s = sqrt(fabs((1 - z) * (1 + z)));
@@ -20,13 +21,15 @@ double restitution_of_damping(double z, bool attraction)
     return z < 1 ? exp(-PI * z / sqrt((1 - z) * (1 + z))) : 0;
 }
 
-/* Without attraction: Newton on f(z) = 2 z q(z) + ln e = 0, q = acos(z)/sqrt(1-z^2). From (1 - z^2) q' = z q - 1 follows
- * f' = 2 (q - z)/(1 - z^2), which is 4/3 + 4 (1-z)/5 + ... near z = 1. f is increasing and concave, so that from the left of the root Newton may
- * overshoot once but then approaches from one side. */
+/* Without attraction: Newton on f(z) = 2 z q(z) + ln e = 0, q = acos(z)/sqrt(1-z^2). From (1 - z^2)
+ * q' = z q - 1 follows f' = 2 (q - z)/(1 - z^2), which is 4/3 + 4 (1-z)/5 + ... near z = 1. f is
+ * increasing and concave, so that from the left of the root Newton may overshoot once but then
+ * approaches from one side. */
 static double damping_without_attraction(double e)
 {
     double target = -log(e);
-    double z = target / sqrt(PI * PI + target * target); /* the inverse with attraction: always below the root */
+    /* the inverse with attraction: always below the root */
+    double z = target / sqrt(PI * PI + target * target);
     for (int k = 0; k < 100; k++) {
         double q = arc_quotient(z), d = 1 - z;
         double slope = fabs(d) < 1e-4 ? 4.0 / 3 + 0.8 * d : 2 * (q - z) / ((1 - z) * (1 + z));

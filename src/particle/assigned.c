@@ -19,7 +19,8 @@ struct assigned {
     size_t real;
     struct exchange exchange[ASSIGNED_N];
     struct launch *pack[ASSIGNED_N], *unpack[ASSIGNED_N];
-    struct side here, there;   /* this rank for others, with ghosts; others for this rank, with owned elements */
+    /* this rank for others, with ghosts; others for this rank, with owned elements */
+    struct side here, there;
     struct buffer segment;     /* int [ranks + 1], see assign.cl */
     struct buffer range;       /* int2 [ranks] */
     struct buffer theirs;      /* int [n_boundary + 1] */
@@ -31,7 +32,8 @@ struct assigned {
 
 static void scratch(struct assigned *a, struct buffer *all[SCRATCH])
 {
-    struct buffer *b[SCRATCH] = {&a->segment, &a->range, &a->theirs, &a->copy, &a->place, &a->ghost, &a->begin, &a->used};
+    struct buffer *b[SCRATCH] = {
+        &a->segment, &a->range, &a->theirs, &a->copy, &a->place, &a->ghost, &a->begin, &a->used};
     for (int i = 0; i < SCRATCH; i++) all[i] = b[i];
 }
 
@@ -53,12 +55,14 @@ static void side_free(struct device *dev, struct side *side)
     free(side->n_element);
 }
 
-struct assigned *assigned_create(struct device *dev, const struct comm *comm, const struct program *assign, const struct program *lists, size_t real)
+struct assigned *assigned_create(struct device *dev, const struct comm *comm,
+    const struct program *assign, const struct program *lists, size_t real)
 {
-    static const char *const exchanged[ASSIGNED_N][4] = {{"states packed", "states arrived", "states send", "states receive"},
+    static const char *const exchanged[ASSIGNED_N][4] = {
+        {"states packed", "states arrived", "states send", "states receive"},
         {"results packed", "results arrived", "results send", "results receive"}};
-    static const char *const name[] = {
-        "segments", "segment range", "pairs of others", "boundary copy", "boundary place", "ghost numbers", "pairs begin", "elements used"};
+    static const char *const name[] = {"segments", "segment range", "pairs of others",
+        "boundary copy", "boundary place", "ghost numbers", "pairs begin", "elements used"};
     struct assigned *a = fail_alloc(sizeof *a);
     struct buffer *all[SCRATCH];
     a->comm = comm;
@@ -114,7 +118,8 @@ static void write_segments(struct device *dev, struct assigned *a, const int64_t
 }
 
 /* Boundary pairs of this rank first, then those of others. */
-static void order(struct device *dev, struct assigned *a, struct scan *scan, struct pair_list *l, const struct halo *halo)
+static void order(struct device *dev, struct assigned *a, struct scan *scan, struct pair_list *l,
+    const struct halo *halo)
 {
     struct launch *k[] = {a->rule, a->order, a->link};
     size_t n = (size_t)l->n_boundary;
@@ -156,17 +161,20 @@ struct elements {
 };
 
 /* Adds up by rank what begin [n + 1] counts of each element on the device. */
-static void read_counts(struct device *dev, const struct elements *e, const struct buffer *begin, int64_t *n_of_rank)
+static void read_counts(
+    struct device *dev, const struct elements *e, const struct buffer *begin, int64_t *n_of_rank)
 {
     int64_t n = e->begin[e->n_segment];
     cl_int *at = fail_alloc(((size_t)n + 1) * sizeof *at);
     buffer_read(dev, begin, 0, ((size_t)n + 1) * sizeof *at, at);
-    for (int s = 0; s < e->n_segment; s++) n_of_rank[e->rank[s]] = at[e->begin[s + 1]] - at[e->begin[s]];
+    for (int s = 0; s < e->n_segment; s++)
+        n_of_rank[e->rank[s]] = at[e->begin[s + 1]] - at[e->begin[s]];
     free(at);
 }
 
 /* The elements that have pairs in the list, a->begin counts how many. */
-static void list_elements(struct device *dev, struct assigned *a, struct scan *scan, const struct elements *e, struct side *side)
+static void list_elements(struct device *dev, struct assigned *a, struct scan *scan,
+    const struct elements *e, struct side *side)
 {
     int64_t n = e->begin[e->n_segment];
     buffer_reserve(dev, &a->used, ((size_t)n + 1) * sizeof(cl_int));
@@ -174,7 +182,8 @@ static void list_elements(struct device *dev, struct assigned *a, struct scan *s
     launch_bind_buffer(a->use, "begin", &a->begin);
     launch_bind_buffer(a->use, "used", &a->used);
     launch_run(a->use, dev->compute, n, 0, NULL, NULL);
-    buffer_reserve(dev, &side->element, (size_t)scan_total(dev, scan, &a->used, n) * sizeof(cl_int));
+    buffer_reserve(
+        dev, &side->element, (size_t)scan_total(dev, scan, &a->used, n) * sizeof(cl_int));
     launch_set_int(a->pick, "n", (int)n);
     launch_bind_buffer(a->pick, "used", &a->used);
     launch_bind_buffer(a->pick, "element", e->number);
@@ -183,8 +192,9 @@ static void list_elements(struct device *dev, struct assigned *a, struct scan *s
     read_counts(dev, e, &a->used, side->n_element);
 }
 
-static void list_side(struct device *dev, struct assigned *a, struct scan *scan, const struct particles *p, const struct pair_list *l,
-    const struct elements *e, struct side *side)
+static void list_side(struct device *dev, struct assigned *a, struct scan *scan,
+    const struct particles *p, const struct pair_list *l, const struct elements *e,
+    struct side *side)
 {
     struct launch *k = a->list;
     int64_t n = e->begin[e->n_segment];
@@ -195,10 +205,12 @@ static void list_side(struct device *dev, struct assigned *a, struct scan *scan,
     const struct {
         const char *name;
         const struct buffer *buffer;
-    } bind[] = {{"segment", &a->segment}, {"range", &a->range}, {"element", e->number}, {"gid", &p->field[FIELD_GID].now},
-        {"row_begin", &l->row_begin}, {"row", &l->row}, {"row_gid", &l->row_gid}, {"incidence_begin", &l->incidence_begin},
+    } bind[] = {{"segment", &a->segment}, {"range", &a->range}, {"element", e->number},
+        {"gid", &p->field[FIELD_GID].now}, {"row_begin", &l->row_begin}, {"row", &l->row},
+        {"row_gid", &l->row_gid}, {"incidence_begin", &l->incidence_begin},
         {"incidence", &l->incidence}, {"begin", &a->begin}, {"list", &side->pair}};
-    for (size_t i = 0; i < sizeof bind / sizeof *bind; i++) launch_bind_buffer(k, bind[i].name, bind[i].buffer);
+    for (size_t i = 0; i < sizeof bind / sizeof *bind; i++)
+        launch_bind_buffer(k, bind[i].name, bind[i].buffer);
     launch_set_int(k, "n_element", (int)n);
     launch_set_int(k, "n_owned", (int)l->n_owned);
     launch_set_int(k, "first_theirs", (int)(l->first_boundary + l->n_mine));
@@ -215,11 +227,12 @@ static void list_side(struct device *dev, struct assigned *a, struct scan *scan,
 }
 
 /* For the owners of ghosts, by the ghosts in their order. */
-static void list_here(
-    struct device *dev, struct assigned *a, struct scan *scan, const struct particles *p, const struct pair_list *l, const struct halo *halo)
+static void list_here(struct device *dev, struct assigned *a, struct scan *scan,
+    const struct particles *p, const struct pair_list *l, const struct halo *halo)
 {
     size_t n = (size_t)halo->n_recv;
-    struct elements ghosts = {&a->ghost, halo->n_recv, halo->recv_rank, halo->recv_begin, fail_alloc(n * sizeof *ghosts.range)};
+    struct elements ghosts = {&a->ghost, halo->n_recv, halo->recv_rank, halo->recv_begin,
+        fail_alloc(n * sizeof *ghosts.range)};
     for (size_t s = 0; s < n; s++) ghosts.range[s] = (cl_int2){{0, (cl_int)l->n_owned}};
     buffer_reserve(dev, &a->ghost, (size_t)p->n_ghost * sizeof(cl_int));
     launch_set_int(a->number, "n", (int)p->n_ghost);
@@ -231,22 +244,26 @@ static void list_here(
 }
 
 /* For the elements that are ghosts elsewhere, in the order in which they are sent there. */
-static void list_there(
-    struct device *dev, struct assigned *a, struct scan *scan, const struct particles *p, const struct pair_list *l, const struct ghosts *ghosts)
+static void list_there(struct device *dev, struct assigned *a, struct scan *scan,
+    const struct particles *p, const struct pair_list *l, const struct ghosts *ghosts)
 {
     const struct halo *halo = ghosts->exchange.halo;
     size_t n = (size_t)halo->n_send;
-    struct elements sent = {&ghosts->index, halo->n_send, halo->send_rank, halo->send_begin, fail_alloc(n * sizeof *sent.range)};
+    struct elements sent = {&ghosts->index, halo->n_send, halo->send_rank, halo->send_begin,
+        fail_alloc(n * sizeof *sent.range)};
     for (size_t s = 0; s < n; s++)
         for (int r = 0; r < halo->n_recv; r++)
             if (halo->recv_rank[r] == halo->send_rank[s])
-                sent.range[s] = (cl_int2){{(cl_int)(l->n_owned + halo->recv_begin[r]), (cl_int)(l->n_owned + halo->recv_begin[r + 1])}};
+                sent.range[s] = (cl_int2){{(cl_int)(l->n_owned + halo->recv_begin[r]),
+                    (cl_int)(l->n_owned + halo->recv_begin[r + 1])}};
     list_side(dev, a, scan, p, l, &sent, &a->there);
     free(sent.range);
 }
 
-/* Between planes of numbers of so many bytes and the records that are sent, for what travels along this way. */
-static void set_moves(struct assigned *a, enum assigned_way way, const struct buffer *plane, int width, size_t number, int64_t capacity)
+/* Between planes of numbers of so many bytes and the records that are sent, for what travels along
+ * this way. */
+static void set_moves(struct assigned *a, enum assigned_way way, const struct buffer *plane,
+    int width, size_t number, int64_t capacity)
 {
     struct exchange *x = &a->exchange[way];
     struct launch *k[] = {a->pack[way], a->unpack[way]};
@@ -265,21 +282,23 @@ static void set_moves(struct assigned *a, enum assigned_way way, const struct bu
 }
 
 /* count_from: what this rank expects, for both ranks have decided alike. */
-static void plan(struct device *dev, struct assigned *a, enum assigned_way way, const int64_t *count_to, const int64_t *count_from,
-    const struct buffer *plane, size_t record)
+static void plan(struct device *dev, struct assigned *a, enum assigned_way way,
+    const int64_t *count_to, const int64_t *count_from, const struct buffer *plane, size_t record)
 {
     struct exchange *x = &a->exchange[way];
     int64_t n = 0;
     exchange_plan(x, a->comm, count_to);
-    for (int k = 0; k < x->halo->n_recv; k++) assert(count_from[x->halo->recv_rank[k]] == x->halo->recv_begin[k + 1] - x->halo->recv_begin[k]);
+    for (int k = 0; k < x->halo->n_recv; k++)
+        assert(count_from[x->halo->recv_rank[k]] ==
+               x->halo->recv_begin[k + 1] - x->halo->recv_begin[k]);
     for (int r = 0; r < a->comm->n_rank; r++) n += count_from[r];
     assert(n == x->n_recv);
     exchange_bind(dev, x, record, true);
     set_moves(a, way, plane, 1, record, 0);
 }
 
-void assigned_build(
-    struct device *dev, struct assigned *a, struct scan *scan, const struct particles *p, struct pairs *pairs, const struct ghosts *ghosts)
+void assigned_build(struct device *dev, struct assigned *a, struct scan *scan,
+    const struct particles *p, struct pairs *pairs, const struct ghosts *ghosts)
 {
     struct pair_list *l = &pairs->now;
     const struct field *state = &p->field[FIELD_STATE];
@@ -287,15 +306,18 @@ void assigned_build(
     list_here(dev, a, scan, p, l, ghosts->exchange.halo);
     list_there(dev, a, scan, p, l, ghosts);
     plan(dev, a, ASSIGNED_STATES, a->there.n_element, a->here.n_element, &state->now, state->bytes);
-    plan(dev, a, ASSIGNED_RESULTS, a->here.n_pair, a->there.n_pair, &pairs->result, (size_t)pairs->layout.result * a->real);
+    plan(dev, a, ASSIGNED_RESULTS, a->here.n_pair, a->there.n_pair, &pairs->result,
+        (size_t)pairs->layout.result * a->real);
 }
 
-void assigned_begin(struct device *dev, struct assigned *a, enum assigned_way way, struct timers *timers)
+void assigned_begin(
+    struct device *dev, struct assigned *a, enum assigned_way way, struct timers *timers)
 {
     exchange_begin(dev, &a->exchange[way], a->pack[way], timers);
 }
 
-void assigned_swap(struct device *dev, struct assigned *a, enum assigned_way way, cl_event *most, struct timers *timers)
+void assigned_swap(struct device *dev, struct assigned *a, enum assigned_way way, cl_event *most,
+    struct timers *timers)
 {
     struct exchange *x = &a->exchange[way];
     const cl_event *arrived = exchange_swap(dev, x, &x->arrived, 0, most, timers);
@@ -303,10 +325,12 @@ void assigned_swap(struct device *dev, struct assigned *a, enum assigned_way way
 }
 
 /* One array of planes, along the way of results. */
-static void send_planes(struct device *dev, struct assigned *a, const struct buffer *plane, int width, size_t number, int64_t capacity)
+static void send_planes(struct device *dev, struct assigned *a, const struct buffer *plane,
+    int width, size_t number, int64_t capacity)
 {
     struct exchange *x = &a->exchange[ASSIGNED_RESULTS];
-    size_t bytes = (size_t)width * number, n_send = (size_t)x->n_send * bytes, n_recv = (size_t)x->n_recv * bytes;
+    size_t bytes = (size_t)width * number, n_send = (size_t)x->n_send * bytes,
+           n_recv = (size_t)x->n_recv * bytes;
     if (width == 0) return;
     char *send = fail_alloc(n_send), *recv = fail_alloc(n_recv);
     buffer_reserve(dev, &x->packed, n_send);

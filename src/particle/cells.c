@@ -8,12 +8,14 @@
 
 enum { BOUNDS_WIDTH = 9, BOUNDS_GROUPS = 64, GROUP = 64, GRID_REALS = 7, GRID_INTS = 4 };
 
-struct cells *cells_create(
-    struct device *dev, const struct features *features, const struct program *lists, const double period[3], const double domain[6])
+struct cells *cells_create(struct device *dev, const struct features *features,
+    const struct program *lists, const double period[3], const double domain[6])
 {
     struct cells *c = fail_alloc(sizeof *c);
-    struct buffer *all[] = {&c->grid_real, &c->grid_int, &c->key, &c->begin, &c->cursor, &c->member, &c->partial};
-    static const char *const name[] = {"grid", "grid, integers", "cell of element", "cell begin", "cell cursor", "cell member", "bounds"};
+    struct buffer *all[] = {
+        &c->grid_real, &c->grid_int, &c->key, &c->begin, &c->cursor, &c->member, &c->partial};
+    static const char *const name[] = {"grid", "grid, integers", "cell of element", "cell begin",
+        "cell cursor", "cell member", "bounds"};
     for (int i = 0; i < 7; i++) {
         buffer_init(all[i], name[i]);
         buffer_reserve(dev, all[i], 0);
@@ -49,23 +51,27 @@ struct cells *cells_create(
 void cells_free(struct device *dev, struct cells *c)
 {
     if (!c) return;
-    struct buffer *all[] = {&c->grid_real, &c->grid_int, &c->key, &c->begin, &c->cursor, &c->member, &c->partial};
+    struct buffer *all[] = {
+        &c->grid_real, &c->grid_int, &c->key, &c->begin, &c->cursor, &c->member, &c->partial};
     for (int i = 0; i < 7; i++) buffer_free(dev, all[i]);
     struct launch *launch[] = {c->bounds, c->count, c->fill, c->order, c->copy};
     for (int i = 0; i < 5; i++) launch_free(launch[i]);
     free(c);
 }
 
-struct cells_bounds cells_bounds(struct device *dev, struct cells *c, const struct particles *p, int64_t n)
+struct cells_bounds cells_bounds(
+    struct device *dev, struct cells *c, const struct particles *p, int64_t n)
 {
-    struct cells_bounds b = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, INFINITY, 0, 0, false};
+    struct cells_bounds b = {
+        {INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, INFINITY, 0, 0, false};
     if (n == 0) return b;
     launch_set_int(c->bounds, "n", (int)n);
     launch_bind_buffer(c->bounds, "position", &p->field[FIELD_STATE].now);
     launch_bind_buffer(c->bounds, "motion", &p->field[FIELD_STATE].now);
     launch_bind_buffer(c->bounds, "reach", &p->reach);
     launch_run(c->bounds, dev->compute, BOUNDS_GROUPS * GROUP, 0, NULL, NULL);
-    double *part = particles_read(dev, &c->partial, c->features->position_is_float, 0, BOUNDS_GROUPS * BOUNDS_WIDTH);
+    double *part = particles_read(
+        dev, &c->partial, c->features->position_is_float, 0, BOUNDS_GROUPS * BOUNDS_WIDTH);
     for (int g = 0; g < BOUNDS_GROUPS; g++) {
         const double *x = part + g * BOUNDS_WIDTH;
         if (x[7] < -1e29) continue; /* a group without elements */
@@ -83,8 +89,8 @@ struct cells_bounds cells_bounds(struct device *dev, struct cells *c, const stru
 }
 
 /* One level of cells of edge >= h over the bounds, at most `most` of them. */
-static void set_level(
-    const struct cells *c, const struct cells_bounds *b, double h, double reach, int64_t most, double *real, cl_int *integer, int64_t *n_cell)
+static void set_level(const struct cells *c, const struct cells_bounds *b, double h, double reach,
+    int64_t most, double *real, cl_int *integer, int64_t *n_cell)
 {
     double low[3], size[3];
     for (int a = 0; a < 3; a++) {
@@ -110,9 +116,11 @@ static void set_level(
     *n_cell += cells;
 }
 
-static void write_grid(struct device *dev, struct cells *c, const double *real, const cl_int *integer)
+static void write_grid(
+    struct device *dev, struct cells *c, const double *real, const cl_int *integer)
 {
-    particles_write(dev, &c->grid_real, c->features->position_is_float, 0, (size_t)c->n_level * GRID_REALS, real);
+    particles_write(dev, &c->grid_real, c->features->position_is_float, 0,
+        (size_t)c->n_level * GRID_REALS, real);
     buffer_write(dev, &c->grid_int, 0, (size_t)c->n_level * GRID_INTS * sizeof(cl_int), integer);
     buffer_reserve(dev, &c->begin, ((size_t)c->n_cell + 2) * sizeof(cl_int));
     buffer_reserve(dev, &c->cursor, ((size_t)c->n_cell + 2) * sizeof(cl_int));
@@ -134,17 +142,21 @@ static void reserve(struct device *dev, struct cells *c, int64_t n)
     buffer_reserve(dev, &c->member, (size_t)n * sizeof(cl_int));
 }
 
-/* Levels halve the reach from the largest down, as long as there may be elements; an element searches its own and all other levels. */
-void cells_sort(struct device *dev, struct cells *c, struct scan *scan, const struct particles *p, int64_t n, const struct cells_bounds *b)
+/* Levels halve the reach from the largest down, as long as there may be elements; an element
+ * searches its own and all other levels. */
+void cells_sort(struct device *dev, struct cells *c, struct scan *scan, const struct particles *p,
+    int64_t n, const struct cells_bounds *b)
 {
     double real[CELLS_LEVELS * GRID_REALS];
     cl_int integer[CELLS_LEVELS * GRID_INTS];
     c->n_level = 0;
     c->n_cell = 0;
     if (n == 0) return;
-    for (double reach = b->reach_max * (1 + 1e-6); c->n_level < CELLS_LEVELS; reach *= 0.5, c->n_level++) {
+    for (double reach = b->reach_max * (1 + 1e-6); c->n_level < CELLS_LEVELS;
+         reach *= 0.5, c->n_level++) {
         if (c->n_level > 0 && reach < b->reach_min) break;
-        set_level(c, b, 2 * reach, reach, 2 * n + 1000, real + c->n_level * GRID_REALS, integer + c->n_level * GRID_INTS, &c->n_cell);
+        set_level(c, b, 2 * reach, reach, 2 * n + 1000, real + c->n_level * GRID_REALS,
+            integer + c->n_level * GRID_INTS, &c->n_cell);
     }
     write_grid(dev, c, real, integer);
     reserve(dev, c, n);
@@ -156,8 +168,8 @@ void cells_sort(struct device *dev, struct cells *c, struct scan *scan, const st
     fill(dev, c, scan, n, c->n_cell);
 }
 
-void cells_order(struct device *dev, struct cells *c, struct scan *scan, const struct particles *p, int64_t n, const struct cells_bounds *b,
-    const struct buffer *keep)
+void cells_order(struct device *dev, struct cells *c, struct scan *scan, const struct particles *p,
+    int64_t n, const struct cells_bounds *b, const struct buffer *keep)
 {
     double real[GRID_REALS];
     cl_int integer[GRID_INTS];

@@ -1,5 +1,5 @@
-/* Cells: elements sorted into grids of several levels, so that neighbours are found, whatever mix of sizes. See kernels/particle/grid.h and
- * cells.cl. */
+/* Cells: elements sorted into grids of several levels, so that neighbours are found, whatever mix
+ * of sizes. See kernels/particle/grid.h and cells.cl. */
 #ifndef DEMOCLES_CELLS_H
 #define DEMOCLES_CELLS_H
 
@@ -8,7 +8,8 @@
 
 enum { CELLS_LEVELS = 10 };
 
-/* Bounds of a set of elements: box of centres, smallest and largest listing reach [m], largest speed [m/s]. */
+/* Bounds of a set of elements: box of centres, smallest and largest listing reach [m], largest
+ * speed [m/s]. */
 struct cells_bounds {
     double low[3], high[3], reach_min, reach_max, speed;
     bool has_nan;
@@ -24,18 +25,22 @@ struct cells {
     struct launch *bounds, *count, *fill, *order, *copy;
 };
 
-struct cells *cells_create(
-    struct device *dev, const struct features *features, const struct program *lists, const double period[3], const double domain[6]);
+struct cells *cells_create(struct device *dev, const struct features *features,
+    const struct program *lists, const double period[3], const double domain[6]);
 void cells_free(struct device *dev, struct cells *cells);
 
 /* Bounds of the first n elements; reach as it stands. Blocking. low > high for n = 0. */
-struct cells_bounds cells_bounds(struct device *dev, struct cells *cells, const struct particles *p, int64_t n);
+struct cells_bounds cells_bounds(
+    struct device *dev, struct cells *cells, const struct particles *p, int64_t n);
 
 /* Sorts the first n elements by cell; levels and sizes follow from the bounds. */
-void cells_sort(struct device *dev, struct cells *cells, struct scan *scan, const struct particles *p, int64_t n, const struct cells_bounds *bounds);
+void cells_sort(struct device *dev, struct cells *cells, struct scan *scan,
+    const struct particles *p, int64_t n, const struct cells_bounds *bounds);
 
-/* Storage order: cells->member gets the elements with keep[i] != 0 cell by cell, the others last. */
-void cells_order(struct device *dev, struct cells *cells, struct scan *scan, const struct particles *p, int64_t n, const struct cells_bounds *bounds,
+/* Storage order: cells->member gets the elements with keep[i] != 0 cell by cell, the others
+ * last. */
+void cells_order(struct device *dev, struct cells *cells, struct scan *scan,
+    const struct particles *p, int64_t n, const struct cells_bounds *bounds,
     const struct buffer *keep);
 
 #endif

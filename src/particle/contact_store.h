@@ -1,4 +1,5 @@
-/* What pairs and wall contacts share in memory: how wide a history is, and those that come with elements from elsewhere. */
+/* What pairs and wall contacts share in memory: how wide a history is, and those that come with
+ * elements from elsewhere. */
 #ifndef DEMOCLES_CONTACT_STORE_H
 #define DEMOCLES_CONTACT_STORE_H
 
@@ -7,7 +8,8 @@
 
 enum { CONTACT_LEDGER_WIDTH = LEDGER_WIDTH }; /* double per contact */
 
-/* How wide contacts are in memory, as the program of a force says itself (kernels/contact/layout.cl). */
+/* How wide contacts are in memory, as the program of a force says itself
+ * (kernels/contact/layout.cl). */
 struct contact_layout {
     int history, result; /* planes of real; real per result record */
     bool remembers;      /* state bits and history exist */

@@ -1,7 +1,9 @@
-/* Parameters of contacts by pair of materials, computed once on the host in double and handed to the kernels as numbers.
+/* Parameters of contacts by pair of materials, computed once on the host in double and handed to
+ * the kernels as numbers.
  *
- * Rows as kernels/contact/contact_memory.h reads them. With one size the rows are complete (contact_parameters); with several they hold what the
- * materials say (contact_material) and the kernel adds the sizes. */
+ * Rows as kernels/contact/contact_memory.h reads them. With one size the rows are complete
+ * (contact_parameters); with several they hold what the materials say (contact_material) and the
+ * kernel adds the sizes. */
 #ifndef DEMOCLES_CONTACT_TABLE_H
 #define DEMOCLES_CONTACT_TABLE_H
 
@@ -14,7 +16,8 @@ enum { CONTACT_TABLE_MATERIAL = 10, CONTACT_TABLE_PARAMETER = 15 };
 void contact_table_material(const struct scene *scene, int a, int b, double *row);
 
 /* row [CONTACT_TABLE_PARAMETER] for two spheres of radius [m] and mass [kg], or one at a wall. */
-void contact_table_parameters(const struct scene *scene, int a, int b, bool wall, double radius, double mass, double dt, double *row);
+void contact_table_parameters(const struct scene *scene, int a, int b, bool wall, double radius,
+    double mass, double dt, double *row);
 
 /* Sets the arguments k_n, gamma_n, ... law of a force kernel from a row of parameters. */
 void contact_table_set(struct launch *launch, const double *row);

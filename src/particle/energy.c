@@ -12,7 +12,8 @@
 struct totals {
     struct sum taken[LEDGER_WIDTH];
     struct sum removed;
-    struct sum wrapped; /* potential that elements have won by jumps of a period, to be added to that of their places */
+    /* potential that elements have won by jumps of a period, to be added to that of their places */
+    struct sum wrapped;
 };
 
 struct energy {
@@ -32,9 +33,11 @@ struct energy *energy_create(struct sim *s)
     buffer_init(&e->partial, "sums");
     buffer_init(&e->gone_id, "gone elements");
     buffer_init(&e->gone_wall, "gone walls");
-    for (int a = 0; a < 3; a++) e->wraps |= run->features.periodic[a] && fabs(s->scene->gravity[a]) > 0;
+    for (int a = 0; a < 3; a++)
+        e->wraps |= run->features.periodic[a] && fabs(s->scene->gravity[a]) > 0;
     if (!s->dev->fp64) return e;
-    char *body = features_options(&run->features, FEATURES_BODY), *options = fail_format("%s -DWITH_SUMS=1", body);
+    char *body = features_options(&run->features, FEATURES_BODY),
+         *options = fail_format("%s -DWITH_SUMS=1", body);
     e->program = program_build(s->dev, s->comm, "sums", options, source);
     free(body);
     free(options);
@@ -42,12 +45,14 @@ struct energy *energy_create(struct sim *s)
     e->ledger = launch_create(e->program, "sums_ledger");
     e->gone = launch_create(e->program, "sums_gone");
     e->gone_walls = launch_create(e->program, "sums_gone_walls");
-    static const char *const gravity[] = {"gravity_x", "gravity_y", "gravity_z"}, *const origin[] = {"origin_x", "origin_y", "origin_z"};
+    static const char *const gravity[] = {"gravity_x", "gravity_y", "gravity_z"},
+                             *const origin[] = {"origin_x", "origin_y", "origin_z"};
     for (int a = 0; a < 3; a++) {
         launch_set_real(e->elements, gravity[a], s->scene->gravity[a]);
         launch_set_real(e->elements, origin[a], run->domain[a]);
     }
-    buffer_reserve(s->dev, &e->partial, (size_t)SUMS_GROUPS * SUMS_ELEMENT * SUMS_WIDTH * sizeof(int64_t));
+    buffer_reserve(
+        s->dev, &e->partial, (size_t)SUMS_GROUPS * SUMS_ELEMENT * SUMS_WIDTH * sizeof(int64_t));
     buffer_reserve(s->dev, &e->gone_id, 0);
     buffer_reserve(s->dev, &e->gone_wall, 0);
     struct launch *all[] = {e->elements, e->ledger, e->gone, e->gone_walls};
@@ -78,7 +83,8 @@ static void sum_elements(struct sim *s, struct sum sum[SUMS_ELEMENT])
     integer_sums_run(s->dev, k, &run->energy->partial, SUMS_ELEMENT, sum);
 }
 
-/* Which contacts a kernel goes over: the pairs that count on this rank, or all candidates at walls. */
+/* Which contacts a kernel goes over: the pairs that count on this rank, or all candidates at
+ * walls. */
 static void set_contacts(struct launch *k, const struct sim *s, bool wall)
 {
     struct particle_run *run = s->particle;
@@ -127,7 +133,8 @@ static int by_number(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Ids of the elements that have left on any rank, ascending, to the device; returns how many. Collective. */
+/* Ids of the elements that have left on any rank, ascending, to the device; returns how many.
+ * Collective. */
 static int64_t share_gone(struct sim *s)
 {
     struct particle_run *run = s->particle;
@@ -148,17 +155,20 @@ static int64_t share_gone(struct sim *s)
     return n;
 }
 
-/* Springs of contacts of which an element has left on any rank, each where it counts otherwise too. */
+/* Springs of contacts of which an element has left on any rank, each where it counts otherwise
+ * too. */
 static void remove_springs(struct sim *s, int64_t n_gone)
 {
     struct particle_run *run = s->particle;
     struct energy *e = run->energy;
     launch_set_int(e->gone, "n_gone", (int)n_gone);
     launch_bind_buffer(e->gone, "gone", &e->gone_id);
-    launch_bind_buffer(e->gone, "gid", &run->particles->field[FIELD_GID].spare); /* numbers of the old lists */
+    /* numbers of the old lists */
+    launch_bind_buffer(e->gone, "gid", &run->particles->field[FIELD_GID].spare);
     for (int wall = 0; wall < (run->wall_contacts ? 2 : 1); wall++) {
         set_contacts(e->gone, s, wall);
-        launch_bind_buffer(e->gone, "partner", wall ? &run->wall_contacts->now.element : &run->pairs->now.pair_j);
+        launch_bind_buffer(
+            e->gone, "partner", wall ? &run->wall_contacts->now.element : &run->pairs->now.pair_j);
         integer_sums_run(s->dev, e->gone, &e->partial, 1, &e->total.removed);
     }
 }
@@ -172,7 +182,8 @@ static void remove_walls(struct sim *s)
     const struct wall_pose *pose = wall_contacts_pose(w, s->step);
     size_t bytes = (size_t)w->walls->n_wall * sizeof(cl_int);
     cl_int *gone = fail_alloc(bytes), any = 0;
-    for (int k = 0; k < w->walls->n_wall; k++) any |= gone[k] = w->room_host[k] >= 0 && !pose[k].active;
+    for (int k = 0; k < w->walls->n_wall; k++)
+        any |= gone[k] = w->room_host[k] >= 0 && !pose[k].active;
     if (any) {
         buffer_reserve(s->dev, &e->gone_wall, bytes);
         buffer_write(s->dev, &e->gone_wall, 0, bytes, gone);
@@ -187,7 +198,8 @@ static void remove_walls(struct sim *s)
     free(gone);
 }
 
-/* Elements leave at x^n with the velocities of the half step before; gravity's half kick is missing, that of contacts is left out. */
+/* Elements leave at x^n with the velocities of the half step before; gravity's half kick is
+ * missing, that of contacts is left out. */
 static void remove_elements(struct sim *s, struct sum *gravity)
 {
     struct particle_run *run = s->particle;
@@ -201,7 +213,8 @@ static void remove_elements(struct sim *s, struct sum *gravity)
             e.w[a] = r->w[a];
         }
         sums_element(e, s->scene->gravity, run->domain, term);
-        for (int k = SUMS_KINETIC; k <= SUMS_GRAVITY; k++) sums_add(&run->energy->total.removed, term[k]);
+        for (int k = SUMS_KINETIC; k <= SUMS_GRAVITY; k++)
+            sums_add(&run->energy->total.removed, term[k]);
         sums_add(gravity, term[SUMS_GRAVITY]);
     }
     integer_sums_carry(&run->energy->total.removed);
@@ -236,16 +249,19 @@ static void put_sum(struct sum sum, int64_t out[SUMS_WIDTH])
 
 void energy_totals(const struct sim *s, int64_t total[ENERGY_TOTALS][SUMS_WIDTH])
 {
-    for (int k = 0; k < ENERGY_TOTALS; k++) put_sum(*total_at(&s->particle->energy->total, k), total[k]);
+    for (int k = 0; k < ENERGY_TOTALS; k++)
+        put_sum(*total_at(&s->particle->energy->total, k), total[k]);
     comm_sum_i64(s->comm, total[0], ENERGY_TOTALS * SUMS_WIDTH);
-    for (int k = 0; k < ENERGY_TOTALS; k++) put_sum((struct sum){total[k][0], total[k][1], total[k][2], total[k][3]}, total[k]);
+    for (int k = 0; k < ENERGY_TOTALS; k++)
+        put_sum((struct sum){total[k][0], total[k][1], total[k][2], total[k][3]}, total[k]);
 }
 
 void energy_restore(struct sim *s, const int64_t total[ENERGY_TOTALS][SUMS_WIDTH])
 {
     for (int k = 0; k < ENERGY_TOTALS; k++)
         *total_at(&s->particle->energy->total, k) =
-            s->comm->rank > 0 ? (struct sum){0} : (struct sum){total[k][0], total[k][1], total[k][2], total[k][3]};
+            s->comm->rank > 0 ? (struct sum){0}
+                              : (struct sum){total[k][0], total[k][1], total[k][2], total[k][3]};
 }
 
 void energy_now(struct sim *s, struct energy_sums *out)
@@ -262,18 +278,21 @@ void energy_now(struct sim *s, struct energy_sums *out)
         sum[REMOVED] = e->total.removed;
         integer_sums_add(&sum[SUMS_GRAVITY], e->total.wrapped, 1);
     }
-    for (int k = 0; k < N; k++) sum[k].bad += !e->program || (k >= SUMS_ELEMENT && !run->features.energy);
+    for (int k = 0; k < N; k++)
+        sum[k].bad += !e->program || (k >= SUMS_ELEMENT && !run->features.energy);
     integer_sums_all(s->comm, sum, N, v);
     const double *taken = v + TOTALS;
-    *out = (struct energy_sums){v[SUMS_KINETIC], v[SUMS_ROTATIONAL], v[SUMS_GRAVITY], v[ELASTIC], taken[LEDGER_NORMAL], taken[LEDGER_TANGENTIAL],
-        taken[LEDGER_SLIDING], taken[LEDGER_ROLLING], taken[LEDGER_BONDS], taken[LEDGER_WORK], v[REMOVED],
-        {v[SUMS_MOMENTUM], v[SUMS_MOMENTUM + 1], v[SUMS_MOMENTUM + 2]}, {v[SUMS_ANGULAR], v[SUMS_ANGULAR + 1], v[SUMS_ANGULAR + 2]}};
+    *out = (struct energy_sums){v[SUMS_KINETIC], v[SUMS_ROTATIONAL], v[SUMS_GRAVITY], v[ELASTIC],
+        taken[LEDGER_NORMAL], taken[LEDGER_TANGENTIAL], taken[LEDGER_SLIDING],
+        taken[LEDGER_ROLLING], taken[LEDGER_BONDS], taken[LEDGER_WORK], v[REMOVED],
+        {v[SUMS_MOMENTUM], v[SUMS_MOMENTUM + 1], v[SUMS_MOMENTUM + 2]},
+        {v[SUMS_ANGULAR], v[SUMS_ANGULAR + 1], v[SUMS_ANGULAR + 2]}};
 }
 
 static double account(const struct energy_sums *e)
 {
-    return e->kinetic + e->rotational + e->gravity + e->elastic + e->dashpot_n + e->dashpot_t + e->sliding + e->rolling + e->bonds + e->removed -
-           e->wall_work;
+    return e->kinetic + e->rotational + e->gravity + e->elastic + e->dashpot_n + e->dashpot_t +
+           e->sliding + e->rolling + e->bonds + e->removed - e->wall_work;
 }
 
 double energy_balance(const struct energy_sums *start, const struct energy_sums *now)

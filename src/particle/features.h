@@ -1,4 +1,5 @@
-/* What a scene needs of the kernels, and nothing more: one list of features, each 0 or 1, from which the build options follow.
+/* What a scene needs of the kernels, and nothing more: one list of features, each 0 or 1, from
+ * which the build options follow.
  *
  * Knows the scene and its walls; no device. The same list goes into run.json. */
 #ifndef DEMOCLES_FEATURES_H
@@ -11,7 +12,8 @@
 /* Parts of the contact laws, once for pairs of elements and once for elements at walls. */
 struct law_features {
     bool any; /* there is such a contact at all */
-    bool linear, hertz, no_attraction, tangential, tangential_damping, rolling_cdt, rolling_epsd, binding;
+    bool linear, hertz, no_attraction, tangential, tangential_damping, rolling_cdt, rolling_epsd,
+        binding;
 };
 
 struct features {
@@ -30,9 +32,11 @@ struct features {
     double bond_range; /* [m] how far beyond touching a bond may reach: largest F_b/k_n */
 };
 
-struct features features_of(const struct scene *scene, const struct walls *walls, const struct elements_host *elements);
+struct features features_of(
+    const struct scene *scene, const struct walls *walls, const struct elements_host *elements);
 
-/* Build options of the program of pairs (FEATURES_PAIR), of walls, or of what moves elements and builds lists; owned by the caller. */
+/* Build options of the program of pairs (FEATURES_PAIR), of walls, or of what moves elements and
+ * builds lists; owned by the caller. */
 enum features_program { FEATURES_PAIR, FEATURES_WALL, FEATURES_BODY };
 char *features_options(const struct features *features, enum features_program program);
 

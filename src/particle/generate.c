@@ -24,7 +24,8 @@ static void reserve(struct generate_list *list, int64_t n)
     e->group = grow(e->group, n, sizeof(int));
 }
 
-int64_t generate_add(struct generate_list *list, const struct scene *scene, int group, const double x[3], double radius)
+int64_t generate_add(struct generate_list *list, const struct scene *scene, int group,
+    const double x[3], double radius)
 {
     struct elements_host *e = list->elements;
     const struct element_group *of = scene->group + group;

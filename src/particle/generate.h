@@ -1,5 +1,6 @@
-/* Scene -> initial elements: fills regions, reads CSV files, checks the result. A function of the scene alone: every rank gets the same elements,
- * to the bit, and takes those that it owns. Knows no device and no MPI. */
+/* Scene -> initial elements: fills regions, reads CSV files, checks the result. A function of the
+ * scene alone: every rank gets the same elements, to the bit, and takes those that it owns. Knows
+ * no device and no MPI. */
 #ifndef DEMOCLES_GENERATE_H
 #define DEMOCLES_GENERATE_H
 
@@ -20,17 +21,23 @@ struct elements_host {
 };
 
 /* Makes the elements of all groups.
- *   Fill: on a cubic lattice of spacing (1 + jitter) times the largest diameter, the sites whose whole sphere lies in the region, `count` of them
- *     from the lowest up (against gravity; without gravity along z), layer by layer. Diameter and displacement of a site are random numbers of
- *     (seed, site): they do not depend on count. Displacements of up to jitter/2 diameters per axis keep neighbours apart.
+ *   Fill: on a cubic lattice of spacing (1 + jitter) times the largest diameter, the sites whose
+ *     whole sphere lies in the region, `count` of them
+ *     from the lowest up (against gravity; without gravity along z), layer by layer. Diameter and
+ *       displacement of a site are random numbers of
+ *     (seed, site): they do not depend on count. Displacements of up to jitter/2 diameters per axis
+ *       keep neighbours apart.
  *   File: CSV, first line names the columns.
- * Then checks that no two centres coincide (nearer than 1e-3 of the smaller radius, periodic images included) and that all centres are in the
- * domain's box. NULL with messages in `errors`, each with the file and line that it is about, if anything is wrong. Not collective. */
+ * Then checks that no two centres coincide (nearer than 1e-3 of the smaller radius, periodic images
+ * included) and that all centres are in the domain's box. NULL with messages in `errors`, each with
+ * the file and line that it is about, if anything is wrong. Not collective. */
 struct elements_host *generate_elements(const struct scene *scene, struct scene_errors *errors);
 void generate_free(struct elements_host *elements);
 
-/* Checks the start against the walls that are there at t = 0: an element must not be behind a plane or within a rod, nor deeper than half its
- * radius in any other wall. Names the first three and counts the rest. */
-void generate_check_walls(const struct scene *scene, const struct walls *walls, const struct elements_host *elements, struct scene_errors *errors);
+/* Checks the start against the walls that are there at t = 0: an element must not be behind a plane
+ * or within a rod, nor deeper than half its radius in any other wall. Names the first three and
+ * counts the rest. */
+void generate_check_walls(const struct scene *scene, const struct walls *walls,
+    const struct elements_host *elements, struct scene_errors *errors);
 
 #endif

@@ -1,4 +1,5 @@
-/* Is the start possible? No two elements in one place, none outside the domain, none in a wall. Each costs O(n). */
+/* Is the start possible? No two elements in one place, none outside the domain, none in a wall.
+ * Each costs O(n). */
 #include "shape/bvh.h"
 #include "comm/fail.h"
 #include "generate_parts.h"
@@ -9,7 +10,8 @@
 #include <stdlib.h>
 
 enum { MOST_NAMED = 3 };
-static const double coincidence = 1e-3; /* of the smaller radius: no contact law knows a normal there */
+/* of the smaller radius: no contact law knows a normal there */
+static const double coincidence = 1e-3;
 
 static const char *group_name(const struct scene *scene, const struct elements_host *e, int64_t i)
 {
@@ -20,26 +22,31 @@ static int group_line(const struct scene *scene, const struct elements_host *e, 
     return scene->group[e->group[i]].line;
 }
 
-static void check_domain(const struct scene *scene, const struct elements_host *e, struct scene_errors *errors)
+static void check_domain(
+    const struct scene *scene, const struct elements_host *e, struct scene_errors *errors)
 {
     int64_t n_out = 0, last = 0;
     if (!scene->domain.has_box) return;
     for (int64_t i = 0; i < e->n; i++) {
         const double *x = e->x + 3 * i;
         bool is_in = true;
-        for (int a = 0; a < 3; a++) is_in = is_in && x[a] >= scene->domain.min[a] && x[a] <= scene->domain.max[a];
+        for (int a = 0; a < 3; a++)
+            is_in = is_in && x[a] >= scene->domain.min[a] && x[a] <= scene->domain.max[a];
         if (is_in) continue;
         last = i;
         if (n_out++ < MOST_NAMED)
-            scene_errors_add(errors, "%s:%d: element %lld of group '%s' at (%g, %g, %g) is outside the domain", scene->path, group_line(scene, e, i),
-                (long long)i, group_name(scene, e, i), x[0], x[1], x[2]);
+            scene_errors_add(errors,
+                "%s:%d: element %lld of group '%s' at (%g, %g, %g) is outside the domain",
+                scene->path, group_line(scene, e, i), (long long)i, group_name(scene, e, i), x[0],
+                x[1], x[2]);
     }
     if (n_out > MOST_NAMED)
-        scene_errors_add(
-            errors, "%s:%d: and %lld more elements are outside the domain", scene->path, group_line(scene, e, last), (long long)(n_out - MOST_NAMED));
+        scene_errors_add(errors, "%s:%d: and %lld more elements are outside the domain",
+            scene->path, group_line(scene, e, last), (long long)(n_out - MOST_NAMED));
 }
 
-/* Elements in cells of a hash table, a cell as wide as twice the largest distance asked for: an element has at most 8 cells within reach. */
+/* Elements in cells of a hash table, a cell as wide as twice the largest distance asked for: an
+ * element has at most 8 cells within reach. */
 struct grid {
     double reach; /* [m] */
     uint64_t mask;
@@ -57,20 +64,25 @@ static uint64_t cell_hash(const struct grid *grid, const double cell[3])
 }
 
 /* Lowest element of the grid that coincides with one of radius r at x, or -1. */
-static int64_t grid_find(const struct grid *grid, const struct elements_host *e, const double x[3], double r)
+static int64_t grid_find(
+    const struct grid *grid, const struct elements_host *e, const double x[3], double r)
 {
     int64_t found = -1;
     for (int corner = 0; corner < 8; corner++) {
         double cell[3];
-        bool is_new = true; /* corners of the reach that fall into the cell of the corner before it are not looked at again */
+        /* corners of the reach that fall into the cell of the corner before it are not looked at
+         * again */
+        bool is_new = true;
         for (int a = 0; a < 3; a++) {
-            double low = floor((x[a] - grid->reach) / (2 * grid->reach)), high = floor((x[a] + grid->reach) / (2 * grid->reach));
+            double low = floor((x[a] - grid->reach) / (2 * grid->reach)),
+                   high = floor((x[a] + grid->reach) / (2 * grid->reach));
             cell[a] = corner >> a & 1 ? high : low;
             is_new = is_new && (!(corner >> a & 1) || high > low);
         }
         if (!is_new) continue;
         for (int64_t j = grid->head[cell_hash(grid, cell)]; j >= 0; j = grid->next[j]) {
-            double dx = x[0] - e->x[3 * j], dy = x[1] - e->x[3 * j + 1], dz = x[2] - e->x[3 * j + 2], near = coincidence * fmin(r, e->radius[j]);
+            double dx = x[0] - e->x[3 * j], dy = x[1] - e->x[3 * j + 1],
+                   dz = x[2] - e->x[3 * j + 2], near = coincidence * fmin(r, e->radius[j]);
             if (dx * dx + dy * dy + dz * dz < near * near && (found < 0 || j < found)) found = j;
         }
     }
@@ -87,7 +99,8 @@ static void grid_add(struct grid *grid, const struct elements_host *e, int64_t i
 }
 
 /* The same at x and at its images across periodic faces that are within reach. */
-static int64_t find_with_images(const struct grid *grid, const struct scene *scene, const struct elements_host *e, int64_t i)
+static int64_t find_with_images(
+    const struct grid *grid, const struct scene *scene, const struct elements_host *e, int64_t i)
 {
     const struct domain *domain = &scene->domain;
     double shift[3] = {0};
@@ -112,7 +125,8 @@ static int64_t find_with_images(const struct grid *grid, const struct scene *sce
     return found;
 }
 
-static void check_coincidence(const struct scene *scene, const struct elements_host *e, struct scene_errors *errors)
+static void check_coincidence(
+    const struct scene *scene, const struct elements_host *e, struct scene_errors *errors)
 {
     struct grid grid = {.mask = 1};
     int64_t n_double = 0, last = 0;
@@ -131,18 +145,23 @@ static void check_coincidence(const struct scene *scene, const struct elements_h
         const double *x = e->x + 3 * i;
         last = i;
         if (n_double++ < MOST_NAMED)
-            scene_errors_add(errors, "%s:%d: element %lld of group '%s' and element %lld of group '%s' coincide at (%g, %g, %g)", scene->path,
-                group_line(scene, e, i), (long long)j, group_name(scene, e, j), (long long)i, group_name(scene, e, i), x[0], x[1], x[2]);
+            scene_errors_add(errors,
+                "%s:%d: element %lld of group '%s' and element %lld of group '%s' coincide at "
+                "(%g, %g, %g)",
+                scene->path, group_line(scene, e, i), (long long)j, group_name(scene, e, j),
+                (long long)i, group_name(scene, e, i), x[0], x[1], x[2]);
     }
     if (n_double > MOST_NAMED)
-        scene_errors_add(errors, "%s:%d: and %lld more elements coincide with others", scene->path, group_line(scene, e, last),
-            (long long)(n_double - MOST_NAMED));
+        scene_errors_add(errors, "%s:%d: and %lld more elements coincide with others", scene->path,
+            group_line(scene, e, last), (long long)(n_double - MOST_NAMED));
     free(grid.head);
     free(grid.next);
 }
 
-/* Of all images of a partner an element meets the nearest alone. Two of them can touch it, or it itself, where the period is shorter than this. */
-static void check_period(const struct scene *scene, const struct elements_host *e, struct scene_errors *errors)
+/* Of all images of a partner an element meets the nearest alone. Two of them can touch it, or it
+ * itself, where the period is shorter than this. */
+static void check_period(
+    const struct scene *scene, const struct elements_host *e, struct scene_errors *errors)
 {
     const struct domain *domain = &scene->domain;
     double largest = 0;
@@ -150,12 +169,15 @@ static void check_period(const struct scene *scene, const struct elements_host *
     for (int a = 0; a < 3; a++) {
         double length = domain->max[a] - domain->min[a];
         if (domain->periodic[a] && length < 2 * largest)
-            scene_errors_add(errors, "%s: domain: periodic in %c over %g m, which has to be at least twice the largest diameter, %g m", scene->path,
-                "xyz"[a], length, largest);
+            scene_errors_add(errors,
+                "%s: domain: periodic in %c over %g m, which has to be at least twice the largest "
+                "diameter, %g m",
+                scene->path, "xyz"[a], length, largest);
     }
 }
 
-void generate_check(const struct scene *scene, const struct elements_host *elements, struct scene_errors *errors)
+void generate_check(
+    const struct scene *scene, const struct elements_host *elements, struct scene_errors *errors)
 {
     check_domain(scene, elements, errors);
     check_period(scene, elements, errors);
@@ -175,16 +197,22 @@ struct probe {
 static void visit_primitive(int item, void *context)
 {
     struct probe *probe = context;
-    struct wall_closest closest = wall_closest(WALL_PRIMITIVE(probe->walls->primitive, probe->first + item), probe->x);
+    struct wall_closest closest =
+        wall_closest(WALL_PRIMITIVE(probe->walls->primitive, probe->first + item), probe->x);
     probe->depth = fmax(probe->depth, probe->radius - closest.distance);
     probe->is_behind = probe->is_behind || closest.distance < 0;
 }
 
-static bool is_in_wall(const struct walls *walls, const struct bvh *bvh, int w, const struct wall_pose *pose, const double x[3], double radius)
+static bool is_in_wall(const struct walls *walls, const struct bvh *bvh, int w,
+    const struct wall_pose *pose, const double x[3], double radius)
 {
     const double *r = pose->rotation, *t = pose->translation;
-    struct wall_frame frame = {p3(r[0], r[1], r[2]), p3(r[3], r[4], r[5]), p3(r[6], r[7], r[8]), p3(t[0], t[1], t[2])};
-    struct probe probe = {.walls = walls, .first = walls->first[w], .x = wall_to_reference(frame, p3(x[0], x[1], x[2])), .radius = radius};
+    struct wall_frame frame = {
+        p3(r[0], r[1], r[2]), p3(r[3], r[4], r[5]), p3(r[6], r[7], r[8]), p3(t[0], t[1], t[2])};
+    struct probe probe = {.walls = walls,
+        .first = walls->first[w],
+        .x = wall_to_reference(frame, p3(x[0], x[1], x[2])),
+        .radius = radius};
     double low[3] = {probe.x.x - radius, probe.x.y - radius, probe.x.z - radius},
            high[3] = {probe.x.x + radius, probe.x.y + radius, probe.x.z + radius};
     if (bvh) bvh_visit(bvh, low, high, visit_primitive, &probe);
@@ -193,7 +221,8 @@ static bool is_in_wall(const struct walls *walls, const struct bvh *bvh, int w, 
     return probe.is_behind || probe.depth > 0.5 * radius;
 }
 
-void generate_check_walls(const struct scene *scene, const struct walls *walls, const struct elements_host *e, struct scene_errors *errors)
+void generate_check_walls(const struct scene *scene, const struct walls *walls,
+    const struct elements_host *e, struct scene_errors *errors)
 {
     struct wall_pose *pose = fail_alloc((size_t)walls->n_wall * sizeof *pose);
     int64_t n_in = 0;
@@ -201,17 +230,23 @@ void generate_check_walls(const struct scene *scene, const struct walls *walls, 
     for (int w = 0; w < walls->n_wall; w++) {
         if (!pose[w].active) continue;
         bool is_finite = walls->wall[w].kind != SURFACE_PLANE && walls->wall[w].kind != SURFACE_BOX;
-        struct bvh *bvh =
-            is_finite ? bvh_create(walls->low + 3 * walls->first[w], walls->high + 3 * walls->first[w], walls->first[w + 1] - walls->first[w]) : NULL;
+        struct bvh *bvh = is_finite ? bvh_create(walls->low + 3 * walls->first[w],
+                                          walls->high + 3 * walls->first[w],
+                                          walls->first[w + 1] - walls->first[w])
+                                    : NULL;
         for (int64_t i = 0; i < e->n; i++) {
             const double *x = e->x + 3 * i;
             if (!is_in_wall(walls, bvh, w, pose + w, x, e->radius[i])) continue;
             if (n_in++ < MOST_NAMED)
-                scene_errors_add(errors, "%s:%d: element %lld of group '%s' at (%g, %g, %g) is inside wall '%s'", scene->path, walls->wall[w].line,
-                    (long long)i, group_name(scene, e, i), x[0], x[1], x[2], walls->wall[w].name);
+                scene_errors_add(errors,
+                    "%s:%d: element %lld of group '%s' at (%g, %g, %g) is inside wall '%s'",
+                    scene->path, walls->wall[w].line, (long long)i, group_name(scene, e, i), x[0],
+                    x[1], x[2], walls->wall[w].name);
         }
         bvh_free(bvh);
     }
-    if (n_in > MOST_NAMED) scene_errors_add(errors, "%s: and %lld more elements are inside walls", scene->path, (long long)(n_in - MOST_NAMED));
+    if (n_in > MOST_NAMED)
+        scene_errors_add(errors, "%s: and %lld more elements are inside walls", scene->path,
+            (long long)(n_in - MOST_NAMED));
     free(pose);
 }

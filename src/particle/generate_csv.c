@@ -1,5 +1,6 @@
-/* Elements from a CSV file: a header that names the columns, in any order, then a line per element in SI units. Spaces around a field and empty
- * lines do not count. Each fault is reported with file:line:column, up to ten per file. */
+/* Elements from a CSV file: a header that names the columns, in any order, then a line per element
+ * in SI units. Spaces around a field and empty lines do not count. Each fault is reported with
+ * file:line:column, up to ten per file. */
 #include "comm/fail.h"
 #include "generate_parts.h"
 #include "base/nearest.h"
@@ -12,7 +13,8 @@
 #include <string.h>
 
 enum { N_COLUMN = 10, N_NEEDED = 4, RADIUS = 3, LINEAR = 4, ANGULAR = 7, MOST_FAULTS = 10 };
-static const char *const column_name[N_COLUMN] = {"x", "y", "z", "radius", "vx", "vy", "vz", "wx", "wy", "wz"};
+static const char *const column_name[N_COLUMN] = {
+    "x", "y", "z", "radius", "vx", "vy", "vz", "wx", "wy", "wz"};
 
 struct csv {
     const char *path;
@@ -31,7 +33,8 @@ struct field {
 
 static void fault(struct csv *csv, int column, const char *text)
 {
-    if (csv->n_fault++ < MOST_FAULTS) scene_errors_add(csv->errors, "%s:%d:%d: %s", csv->path, csv->line, column, text);
+    if (csv->n_fault++ < MOST_FAULTS)
+        scene_errors_add(csv->errors, "%s:%d:%d: %s", csv->path, csv->line, column, text);
 }
 
 /* The field that begins at *at; moves *at to behind its comma, or to NULL after the last one. */
@@ -60,7 +63,9 @@ static void read_header(struct csv *csv, const char *line)
         if (column < 0) {
             const char *near = nearest_name(name, column_name, N_COLUMN);
             text = near ? fail_format("unknown column '%s'; did you mean '%s'?", name, near)
-                        : fail_format("unknown column '%s'; the first line names columns of x,y,z,radius,vx,vy,vz,wx,wy,wz", name);
+                        : fail_format("unknown column '%s'; the first line names columns of "
+                                      "x,y,z,radius,vx,vy,vz,wx,wy,wz",
+                              name);
         } else if (csv->has[column]) {
             text = fail_format("column '%s' is there twice", name);
         } else {
@@ -79,16 +84,20 @@ static void read_header(struct csv *csv, const char *line)
         }
 }
 
-/* One number of a row; a fault if it is not one, or not finite, or a radius that is not positive. */
+/* One number of a row; a fault if it is not one, or not finite, or a radius that is not
+ * positive. */
 static double read_number(struct csv *csv, struct field field, int column)
 {
     char *end, *text = NULL;
     double value = strtod(field.at, &end);
     const char *name = column_name[column];
     if (field.length == 0) text = fail_format("%s is empty", name);
-    else if (end != field.at + field.length) text = fail_format("%s: '%.*s' is not a number", name, field.length, field.at);
-    else if (!isfinite(value)) text = fail_format("%s: '%.*s' is not finite", name, field.length, field.at);
-    else if (column == RADIUS && !(value > 0)) text = fail_format("radius: '%.*s' is not positive", field.length, field.at);
+    else if (end != field.at + field.length)
+        text = fail_format("%s: '%.*s' is not a number", name, field.length, field.at);
+    else if (!isfinite(value))
+        text = fail_format("%s: '%.*s' is not finite", name, field.length, field.at);
+    else if (column == RADIUS && !(value > 0))
+        text = fail_format("radius: '%.*s' is not positive", field.length, field.at);
     if (text) fault(csv, field.column, text);
     free(text);
     return value;
@@ -111,7 +120,8 @@ static bool read_row(struct csv *csv, const char *line, double *value)
     return csv->n_fault == before;
 }
 
-static void add_row(struct generate_list *list, const struct scene *scene, int group, const struct csv *csv, const double *value)
+static void add_row(struct generate_list *list, const struct scene *scene, int group,
+    const struct csv *csv, const double *value)
 {
     int64_t i = generate_add(list, scene, group, value, value[RADIUS]);
     for (int a = 0; a < 3; a++) {
@@ -120,7 +130,8 @@ static void add_row(struct generate_list *list, const struct scene *scene, int g
     }
 }
 
-static void read_lines(struct generate_list *list, const struct scene *scene, int group, struct csv *csv, FILE *file)
+static void read_lines(
+    struct generate_list *list, const struct scene *scene, int group, struct csv *csv, FILE *file)
 {
     char *line = NULL;
     size_t room = 0;
@@ -130,7 +141,9 @@ static void read_lines(struct generate_list *list, const struct scene *scene, in
     errno = 0;
     while (getline(&line, &room, file) >= 0) {
         csv->line++;
-        const char *start = csv->line == 1 && strncmp(line, "\xef\xbb\xbf", 3) == 0 ? line + 3 : line; /* byte order mark of some spreadsheets */
+        /* byte order mark of some spreadsheets */
+        const char *start =
+            csv->line == 1 && strncmp(line, "\xef\xbb\xbf", 3) == 0 ? line + 3 : line;
         if (is_blank(start)) continue;
         if (!has_header) {
             read_header(csv, start);
@@ -141,22 +154,27 @@ static void read_lines(struct generate_list *list, const struct scene *scene, in
             n_row++;
         }
     }
-    if (ferror(file)) scene_errors_add(csv->errors, "%s: %s", csv->path, strerror(errno ? errno : EIO));
-    else if (n_row == 0 && csv->n_fault == 0) scene_errors_add(csv->errors, "%s: no element", csv->path);
+    if (ferror(file))
+        scene_errors_add(csv->errors, "%s: %s", csv->path, strerror(errno ? errno : EIO));
+    else if (n_row == 0 && csv->n_fault == 0)
+        scene_errors_add(csv->errors, "%s: no element", csv->path);
     free(line);
 }
 
-void generate_read_csv(struct generate_list *list, const struct scene *scene, int group, struct scene_errors *errors)
+void generate_read_csv(
+    struct generate_list *list, const struct scene *scene, int group, struct scene_errors *errors)
 {
     const struct element_group *of = scene->group + group;
     struct csv csv = {.path = of->file, .errors = errors};
     FILE *file = fopen(of->file, "r");
     if (!file) {
-        scene_errors_add(errors, "%s:%d: elements '%s': %s: %s", scene->path, of->line, of->name, of->file, strerror(errno));
+        scene_errors_add(errors, "%s:%d: elements '%s': %s: %s", scene->path, of->line, of->name,
+            of->file, strerror(errno));
         return;
     }
     read_lines(list, scene, group, &csv, file);
-    if (csv.n_fault > MOST_FAULTS) scene_errors_add(errors, "%s: and %d more", csv.path, csv.n_fault - MOST_FAULTS);
+    if (csv.n_fault > MOST_FAULTS)
+        scene_errors_add(errors, "%s: and %d more", csv.path, csv.n_fault - MOST_FAULTS);
     free(csv.column);
     fclose(file);
 }

@@ -1,7 +1,8 @@
 /* Fills a region with spheres on a jittered cubic lattice.
  *
- * Spacing s = (1 + jitter) d_max, displacement at most jitter d_max/2 per axis: a sphere never leaves its cube of edge s, so spheres never
- * overlap, whatever the random numbers are. Costs one test per site; with gravity along an axis, only up to the layer where `count` is reached. */
+ * Spacing s = (1 + jitter) d_max, displacement at most jitter d_max/2 per axis: a sphere never
+ * leaves its cube of edge s, so spheres never overlap, whatever the random numbers are. Costs one
+ * test per site; with gravity along an axis, only up to the layer where `count` is reached. */
 #include "comm/fail.h"
 #include "generate_parts.h"
 #include "shape/region.h"
@@ -13,7 +14,8 @@
 /* Rounding that a sphere may stick out of its region by, in radii. */
 static const double slack = 1e-9;
 
-/* Random number in [0, 1) as a function of its key: splitmix64's finaliser over seed, site and stream (Steele, Lea, Flood 2014). */
+/* Random number in [0, 1) as a function of its key: splitmix64's finaliser over seed, site and
+ * stream (Steele, Lea, Flood 2014). */
 static uint64_t mix(uint64_t z)
 {
     z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
@@ -49,7 +51,8 @@ static void find_up(struct fill *fill, const double gravity[3])
     fill->is_straight = fabs(fill->up[fill->layers_along]) >= 1;
 }
 
-/* The lattice stands on the lowest end of the bounds where gravity is straight, and is centred otherwise. */
+/* The lattice stands on the lowest end of the bounds where gravity is straight, and is centred
+ * otherwise. */
 static void place_lattice(struct fill *fill)
 {
     fill->spacing = (1 + fill->group->jitter) * fill->group->diameter[1];
@@ -68,17 +71,21 @@ struct site {
     double x[3], radius;
 };
 
-/* The sphere at lattice point ijk: displaced, of its own size; false if it is not all within the region. */
+/* The sphere at lattice point ijk: displaced, of its own size; false if it is not all within the
+ * region. */
 static bool make_site(const struct fill *fill, const int64_t ijk[3], struct site *site)
 {
     const struct element_group *group = fill->group;
-    uint64_t number = (uint64_t)((ijk[2] * fill->sites[1] + ijk[1]) * fill->sites[0] + ijk[0]), seed = group->seed;
+    uint64_t number = (uint64_t)((ijk[2] * fill->sites[1] + ijk[1]) * fill->sites[0] + ijk[0]),
+             seed = group->seed;
     site->number = number;
-    site->radius = 0.5 * (group->diameter[0] + (group->diameter[1] - group->diameter[0]) * random_at(seed, number, 3));
+    site->radius = 0.5 * (group->diameter[0] + (group->diameter[1] - group->diameter[0]) *
+                                                   random_at(seed, number, 3));
     site->height = 0;
     for (int a = 0; a < 3; a++) {
         double point = fill->origin[a] + (double)ijk[a] * fill->spacing;
-        site->x[a] = point + (2 * random_at(seed, number, (uint64_t)a) - 1) * 0.5 * group->jitter * group->diameter[1];
+        site->x[a] = point + (2 * random_at(seed, number, (uint64_t)a) - 1) * 0.5 * group->jitter *
+                                 group->diameter[1];
         site->height += point * fill->up[a];
     }
     return region_holds(&fill->shape, site->x, site->radius * (1 - slack));
@@ -115,7 +122,8 @@ static int compare_sites(const void *a, const void *b)
     return (p->number > q->number) - (p->number < q->number);
 }
 
-void generate_fill(struct generate_list *list, const struct scene *scene, int group, struct scene_errors *errors)
+void generate_fill(
+    struct generate_list *list, const struct scene *scene, int group, struct scene_errors *errors)
 {
     const struct element_group *of = scene->group + group;
     struct fill fill = {.group = of};
@@ -126,13 +134,18 @@ void generate_fill(struct generate_list *list, const struct scene *scene, int gr
         find_up(&fill, scene->gravity);
         place_lattice(&fill);
         collect(&fill, count, &sites);
-        if (sites.n == 0) text = fail_format("no element of %g m fits into the region", of->diameter[1]);
-        else if (sites.n < count) text = fail_format("%zu elements were asked for, %zu fit into the region", count, sites.n);
+        if (sites.n == 0)
+            text = fail_format("no element of %g m fits into the region", of->diameter[1]);
+        else if (sites.n < count)
+            text =
+                fail_format("%zu elements were asked for, %zu fit into the region", count, sites.n);
     }
-    if (text) scene_errors_add(errors, "%s:%d: elements '%s': %s", scene->path, of->line, of->name, text);
+    if (text)
+        scene_errors_add(errors, "%s:%d: elements '%s': %s", scene->path, of->line, of->name, text);
     else {
         qsort(sites.site, sites.n, sizeof *sites.site, compare_sites);
-        for (size_t k = 0; k < (count ? count : sites.n); k++) generate_add(list, scene, group, sites.site[k].x, sites.site[k].radius);
+        for (size_t k = 0; k < (count ? count : sites.n); k++)
+            generate_add(list, scene, group, sites.site[k].x, sites.site[k].radius);
     }
     free(text);
     free(sites.site);

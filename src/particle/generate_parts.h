@@ -11,10 +11,14 @@ struct generate_list {
 };
 
 /* One more element of a group, at rest relative to the group's velocities; returns its index. */
-int64_t generate_add(struct generate_list *list, const struct scene *scene, int group, const double x[3], double radius);
+int64_t generate_add(struct generate_list *list, const struct scene *scene, int group,
+    const double x[3], double radius);
 
-void generate_fill(struct generate_list *list, const struct scene *scene, int group, struct scene_errors *errors);
-void generate_read_csv(struct generate_list *list, const struct scene *scene, int group, struct scene_errors *errors);
-void generate_check(const struct scene *scene, const struct elements_host *elements, struct scene_errors *errors);
+void generate_fill(
+    struct generate_list *list, const struct scene *scene, int group, struct scene_errors *errors);
+void generate_read_csv(
+    struct generate_list *list, const struct scene *scene, int group, struct scene_errors *errors);
+void generate_check(
+    const struct scene *scene, const struct elements_host *elements, struct scene_errors *errors);
 
 #endif

@@ -6,14 +6,15 @@
 
 #include "comm/fail.h"
 
-struct ghosts *ghosts_create(
-    struct device *dev, const struct comm *comm, const struct features *features, const struct program *lists, const double period[3])
+struct ghosts *ghosts_create(struct device *dev, const struct comm *comm,
+    const struct features *features, const struct program *lists, const double period[3])
 {
     struct ghosts *g = fail_alloc(sizeof *g);
     g->comm = comm;
     g->features = features;
     memcpy(g->period, period, sizeof g->period);
-    static const char *const name[] = {"ghost pack", "ghosts arrived", "ghost send", "ghost receive"};
+    static const char *const name[] = {
+        "ghost pack", "ghosts arrived", "ghost send", "ghost receive"};
     exchange_init(&g->exchange, name);
     buffer_init(&g->index, "ghost index");
     buffer_init(&g->pick, "ghost pick");
@@ -49,7 +50,8 @@ struct box {
 static double gap(double low_a, double high_a, double low_b, double high_b, double period)
 {
     double d = fmax(fmax(low_b - high_a, low_a - high_b), 0);
-    if (period > 0) d = fmin(d, fmin(fmax(low_b + period - high_a, 0), fmax(low_a + period - high_b, 0)));
+    if (period > 0)
+        d = fmin(d, fmin(fmax(low_b + period - high_a, 0), fmax(low_a + period - high_b, 0)));
     return d;
 }
 
@@ -65,10 +67,11 @@ static bool may_meet(const struct ghosts *g, const struct box *a, const struct b
 }
 
 /* The owned elements that `rank` with `box` needs, into `piece`; returns how many. */
-static int64_t select_for(
-    struct device *dev, struct ghosts *g, struct scan *scan, const struct particles *p, int rank, const struct box *box, struct buffer *piece)
+static int64_t select_for(struct device *dev, struct ghosts *g, struct scan *scan,
+    const struct particles *p, int rank, const struct box *box, struct buffer *piece)
 {
-    static const char *const low[] = {"low_x", "low_y", "low_z"}, *const high[] = {"high_x", "high_y", "high_z"};
+    static const char *const low[] = {"low_x", "low_y", "low_z"}, *const high[] = {
+                                                                      "high_x", "high_y", "high_z"};
     launch_set_int(g->select, "n", (int)p->n_owned);
     launch_set_int(g->select, "rank", rank);
     launch_bind_buffer(g->select, "position", &p->field[FIELD_STATE].now);
@@ -89,11 +92,14 @@ static int64_t select_for(
     return n;
 }
 
-/* Sends rows of `from` picked by g->index to their neighbours and stores what comes in at row n_owned of it. */
-static void exchange_rows(struct device *dev, struct ghosts *g, const struct particles *p, struct buffer *from, size_t bytes)
+/* Sends rows of `from` picked by g->index to their neighbours and stores what comes in at row
+ * n_owned of it. */
+static void exchange_rows(struct device *dev, struct ghosts *g, const struct particles *p,
+    struct buffer *from, size_t bytes)
 {
     struct exchange *x = &g->exchange;
-    char *send = fail_alloc((size_t)x->n_send * bytes), *recv = fail_alloc((size_t)x->n_recv * bytes);
+    char *send = fail_alloc((size_t)x->n_send * bytes),
+         *recv = fail_alloc((size_t)x->n_recv * bytes);
     buffer_reserve(dev, &x->packed, (size_t)x->n_send * bytes);
     launch_set_int(g->gather, "n", (int)x->n_send);
     launch_set_int(g->gather, "words", (int)(bytes / 4));
@@ -109,7 +115,8 @@ static void exchange_rows(struct device *dev, struct ghosts *g, const struct par
 }
 
 /* The index lists for all neighbours, one after the other, on the device. */
-static void choose(struct device *dev, struct ghosts *g, struct scan *scan, const struct particles *p, const struct box *all, int64_t *count_to)
+static void choose(struct device *dev, struct ghosts *g, struct scan *scan,
+    const struct particles *p, const struct box *all, int64_t *count_to)
 {
     const struct comm *comm = g->comm;
     cl_int *index = NULL;
@@ -136,13 +143,14 @@ void ghosts_refresh(struct device *dev, struct ghosts *g, struct particles *p)
     exchange_rows(dev, g, p, &p->field[FIELD_STATE].now, p->field[FIELD_STATE].bytes);
 }
 
-void ghosts_plan(
-    struct device *dev, struct ghosts *g, const struct owners *owners, struct scan *scan, struct particles *p, const struct cells_bounds *own)
+void ghosts_plan(struct device *dev, struct ghosts *g, const struct owners *owners,
+    struct scan *scan, struct particles *p, const struct cells_bounds *own)
 {
     const struct comm *comm = g->comm;
     p->n_ghost = 0;
     if (comm->n_rank == 1) return;
-    struct box mine = {{0}, {0}, own->reach_max, p->n_owned}, *all = fail_alloc((size_t)comm->n_rank * sizeof *all);
+    struct box mine = {{0}, {0}, own->reach_max, p->n_owned},
+               *all = fail_alloc((size_t)comm->n_rank * sizeof *all);
     int64_t *count_to = fail_alloc((size_t)comm->n_rank * sizeof *count_to);
     memcpy(mine.low, own->low, sizeof mine.low);
     memcpy(mine.high, own->high, sizeof mine.high);
@@ -168,8 +176,10 @@ void ghosts_begin(struct device *dev, struct ghosts *g, struct timers *timers)
     if (g->comm->n_rank > 1) exchange_begin(dev, &g->exchange, g->gather, timers);
 }
 
-const cl_event *ghosts_swap(struct device *dev, struct ghosts *g, struct particles *p, cl_event *most, struct timers *timers)
+const cl_event *ghosts_swap(struct device *dev, struct ghosts *g, struct particles *p,
+    cl_event *most, struct timers *timers)
 {
     if (g->comm->n_rank == 1) return NULL;
-    return exchange_swap(dev, &g->exchange, &p->field[FIELD_STATE].now, (size_t)p->n_owned * g->exchange.record, most, timers);
+    return exchange_swap(dev, &g->exchange, &p->field[FIELD_STATE].now,
+        (size_t)p->n_owned * g->exchange.record, most, timers);
 }

@@ -23,7 +23,8 @@ static void write_table(struct sim *s, struct limit *limit)
     int n = s->scene->n_material;
     size_t n_value = (size_t)n * (size_t)n * CONTACT_TABLE_MATERIAL;
     double *row = fail_alloc(n_value * sizeof *row);
-    for (int k = 0; k < n * n; k++) limit_material(s->scene, k / n, k % n, row + k * CONTACT_TABLE_MATERIAL);
+    for (int k = 0; k < n * n; k++)
+        limit_material(s->scene, k / n, k % n, row + k * CONTACT_TABLE_MATERIAL);
     buffer_reserve(s->dev, &limit->table, n_value * particles_real(&run->features));
     particles_write(s->dev, &limit->table, run->features.real_is_float, 0, n_value, row);
     free(row);
@@ -86,14 +87,19 @@ static void bind(struct sim *s, struct limit *limit)
     struct particle_run *run = s->particle;
     const struct particles *p = run->particles;
     const struct wall_contacts *w = run->wall_contacts;
-    const struct binding pairs[] = {{"position", &p->field[FIELD_STATE].now}, {"motion", &p->field[FIELD_STATE].now},
-        {"gid", &p->field[FIELD_GID].now}, {"row_begin", &run->pairs->now.row_begin}, {"row", &run->pairs->now.row}, {"table", &limit->table},
-        {"partial", &limit->partial}, {"partial_gid", &limit->partial_gid}};
-    for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) launch_bind_buffer(limit->launch, pairs[i].name, pairs[i].buffer);
+    const struct binding pairs[] = {{"position", &p->field[FIELD_STATE].now},
+        {"motion", &p->field[FIELD_STATE].now}, {"gid", &p->field[FIELD_GID].now},
+        {"row_begin", &run->pairs->now.row_begin}, {"row", &run->pairs->now.row},
+        {"table", &limit->table}, {"partial", &limit->partial},
+        {"partial_gid", &limit->partial_gid}};
+    for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++)
+        launch_bind_buffer(limit->launch, pairs[i].name, pairs[i].buffer);
     if (!w) return;
-    const struct binding walls[] = {{"wall_begin", &w->now.begin}, {"candidate", &w->now.candidate}, {"primitive", &w->primitive},
-        {"wall_of", &w->wall_of}, {"wall_material", &w->material}, {"pose", &w->pose}, {"keep", &w->keep}};
-    for (size_t i = 0; i < sizeof walls / sizeof *walls; i++) launch_bind_buffer_if(limit->launch, walls[i].name, walls[i].buffer);
+    const struct binding walls[] = {{"wall_begin", &w->now.begin}, {"candidate", &w->now.candidate},
+        {"primitive", &w->primitive}, {"wall_of", &w->wall_of}, {"wall_material", &w->material},
+        {"pose", &w->pose}, {"keep", &w->keep}};
+    for (size_t i = 0; i < sizeof walls / sizeof *walls; i++)
+        launch_bind_buffer_if(limit->launch, walls[i].name, walls[i].buffer);
 }
 
 /* Of this rank. */
@@ -101,11 +107,13 @@ static struct limit_result smallest(struct sim *s, struct limit *limit)
 {
     struct particle_run *run = s->particle;
     struct limit_result best = {HUGE_VAL, -1};
-    int64_t gid[GROUPS_MOST], wanted = (run->particles->n_owned + GROUP * PER_ITEM - 1) / (GROUP * PER_ITEM);
+    int64_t gid[GROUPS_MOST],
+        wanted = (run->particles->n_owned + GROUP * PER_ITEM - 1) / (GROUP * PER_ITEM);
     int n_group = wanted < GROUPS_MOST ? (int)wanted : GROUPS_MOST;
     launch_set_int(limit->launch, "n_group", n_group);
     launch_run(limit->launch, s->dev->compute, n_group * GROUP, 0, NULL, NULL);
-    double *dt = particles_read(s->dev, &limit->partial, run->features.real_is_float, 0, (size_t)n_group);
+    double *dt =
+        particles_read(s->dev, &limit->partial, run->features.real_is_float, 0, (size_t)n_group);
     buffer_read(s->dev, &limit->partial_gid, 0, (size_t)n_group * sizeof *gid, gid);
     for (int g = 0; g < n_group; g++) {
         if (gid[g] < 0 || dt[g] > best.dt || (!(dt[g] < best.dt) && gid[g] > best.gid)) continue;
@@ -123,7 +131,8 @@ struct limit_result limit_run(struct sim *s, double dt, double share)
     struct limit_result best = {HUGE_VAL, -1};
     if (run->wall_contacts) {
         wall_contacts_set_step(s->dev, run->wall_contacts, s->step);
-        if (run->features.triangle && run->wall_contacts->now.n > 0) wall_contacts_select(s->dev, run->wall_contacts, run->particles);
+        if (run->features.triangle && run->wall_contacts->now.n > 0)
+            wall_contacts_select(s->dev, run->wall_contacts, run->particles);
     }
     if (run->particles->n_owned > 0) {
         bind(s, limit);

@@ -1,11 +1,12 @@
 /* The limit of the densest packing, by the bound of kernels/contact/law_limit.h on the host.
  *
- * Elements are put into classes of like size. How many of class p can touch one of class c at once: spheres of radius r on a sphere of radius R cover
- * caps of half-angle asin(r/(R + r)), and by Fejes Toth (1943) no two of n points on a sphere are further apart than the angle with
- * cos = (cot^2 w - 1)/2, w = n pi/(6 (n - 2)); so n <= 12 w/(6 w - pi), cot^2 w = 1 + 2 cos(2 asin(r/(R + r))). Equal spheres: 12, up to
- * R/r = 1.09 where 13 fit (Schuette and van der Waerden 1951, 1953).
- * Contacts of a full shell point evenly into all directions: sums over n n^T are a third of their trace. Of n < 12 contacts at most 4 count along and
- * 8 across any direction, as in the full shell.
+ * Elements are put into classes of like size. How many of class p can touch one of class c at once:
+ * spheres of radius r on a sphere of radius R cover caps of half-angle asin(r/(R + r)), and by
+ * Fejes Toth (1943) no two of n points on a sphere are further apart than the angle with cos =
+ * (cot^2 w - 1)/2, w = n pi/(6 (n - 2)); so n <= 12 w/(6 w - pi), cot^2 w = 1 + 2 cos(2 asin(r/(R +
+ * r))). Equal spheres: 12, up to R/r = 1.09 where 13 fit (Schuette and van der Waerden 1951, 1953).
+ * Contacts of a full shell point evenly into all directions: sums over n n^T are a third of their
+ * trace. Of n < 12 contacts at most 4 count along and 8 across any direction, as in the full shell.
  * Walls: in a corner of three walls there is room for half of the shell at most. */
 #include <math.h>
 #include <stdlib.h>
@@ -16,7 +17,8 @@
 
 enum { CLASSES_MOST = 4 /* per material */, ROUNDS = 12 };
 
-/* Smallest overlap at which Hertz contacts are taken, in radii: springs that nothing has loaded would ask for no step at all. */
+/* Smallest overlap at which Hertz contacts are taken, in radii: springs that nothing has loaded
+ * would ask for no step at all. */
 #define OVERLAP_LEAST 1e-4
 #define THIRTEEN_FIT 1.0911
 
@@ -35,25 +37,29 @@ struct contact_material limit_material_of(const struct scene *scene, int a, int 
 {
     double row[CONTACT_TABLE_MATERIAL];
     limit_material(scene, a, b, row);
-    return (struct contact_material){row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8], (int)row[9]};
+    return (struct contact_material){
+        row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8], (int)row[9]};
 }
 
 double limit_best_share(const struct scene *scene)
 {
     double kappa = 0;
     for (int i = 0; i < scene->n_contact; i++) {
-        struct contact_material m = limit_material_of(scene, scene->contact[i].between[0], scene->contact[i].between[1]);
+        struct contact_material m =
+            limit_material_of(scene, scene->contact[i].between[0], scene->contact[i].between[1]);
         kappa = fmax(kappa, m.k_t / (limit_is_hertz(m) ? 1.5 * m.k_n : m.k_n));
     }
     return kappa > 0 ? limit_share(kappa) : 1;
 }
 
 /* Smallest and largest of each of up to CLASSES_MOST ranges of size per material. */
-struct limit_class *limit_classes(const struct scene *scene, const struct elements_host *e, int *n_class)
+struct limit_class *limit_classes(
+    const struct scene *scene, const struct elements_host *e, int *n_class)
 {
     int n_material = scene->n_material;
     struct limit_class *all = fail_alloc((size_t)n_material * CLASSES_MOST * 2 * sizeof *all);
-    double *low = fail_alloc((size_t)n_material * sizeof *low), *high = fail_alloc((size_t)n_material * sizeof *high);
+    double *low = fail_alloc((size_t)n_material * sizeof *low),
+           *high = fail_alloc((size_t)n_material * sizeof *high);
     for (int64_t i = 0; i < e->n; i++) {
         int m = e->material[i];
         low[m] = low[m] > 0 ? fmin(low[m], e->radius[i]) : e->radius[i];
@@ -62,7 +68,9 @@ struct limit_class *limit_classes(const struct scene *scene, const struct elemen
     for (int64_t i = 0; i < e->n; i++) {
         int m = e->material[i];
         double width = log(high[m] / low[m]);
-        int k = width > 1e-6 ? (int)fmin(CLASSES_MOST * log(e->radius[i] / low[m]) / width, CLASSES_MOST - 1) : 0;
+        int k = width > 1e-6
+                    ? (int)fmin(CLASSES_MOST * log(e->radius[i] / low[m]) / width, CLASSES_MOST - 1)
+                    : 0;
         struct limit_class *pair = all + 2 * (m * CLASSES_MOST + k);
         if (pair[0].n == 0 || e->radius[i] < pair[0].r) pair[0].r = e->radius[i];
         pair[1].r = fmax(pair[1].r, e->radius[i]);
@@ -87,10 +95,11 @@ struct limit_class *limit_classes(const struct scene *scene, const struct elemen
     return all;
 }
 
-/* Tangent springs of c against p (NULL: a wall) where an impact at `speed` meets a column as high as that speed takes to fall: its pressure
- * rho g H = rho v^2/2 puts the force rho v^2/2 (2 r)^2 on a contact of spheres of radius r, the smaller of both. */
-struct limit_contact limit_deepest(
-    const struct scene *scene, const struct limit_class *c, const struct limit_class *p, struct contact_material m, double speed, double dt)
+/* Tangent springs of c against p (NULL: a wall) where an impact at `speed` meets a column as high
+ * as that speed takes to fall: its pressure rho g H = rho v^2/2 puts the force rho v^2/2 (2 r)^2 on
+ * a contact of spheres of radius r, the smaller of both. */
+struct limit_contact limit_deepest(const struct scene *scene, const struct limit_class *c,
+    const struct limit_class *p, struct contact_material m, double speed, double dt)
 {
     struct limit_ends ends = {c->w, p ? p->w : 0, c->r, p ? p->r : 0};
     double r = p ? fmin(c->r, p->r) : c->r, depth = OVERLAP_LEAST * r;
@@ -110,7 +119,8 @@ static double shell(double centre, double r)
     return floor(12 * w / (6 * w - M_PI) + 1e-9);
 }
 
-/* Sums over contacts before directions: along and across n, of stiffness and damping; rotation across alone. */
+/* Sums over contacts before directions: along and across n, of stiffness and damping; rotation
+ * across alone. */
 struct traces {
     double n; /* contacts */
     double along_k, across_k, along_g, across_g, turn_k, turn_g;
@@ -157,8 +167,10 @@ static void eigenvalues(struct traces t, double out[4])
     out[3] = across * t.turn_g;
 }
 
-/* The shell of class c: filled with the partners that load it most for the room they take, as many as there are of them. */
-static struct traces fill_shell(const struct scene *scene, const struct limit_class *all, int n_class, int c, double speed, double dt, double share)
+/* The shell of class c: filled with the partners that load it most for the room they take, as many
+ * as there are of them. */
+static struct traces fill_shell(const struct scene *scene, const struct limit_class *all,
+    int n_class, int c, double speed, double dt, double share)
 {
     struct traces sum = {0}, *one = fail_alloc((size_t)n_class * sizeof *one);
     double room = 1;
@@ -171,7 +183,10 @@ static struct traces fill_shell(const struct scene *scene, const struct limit_cl
         int best = -1;
         double most = 0;
         for (int p = 0; p < n_class; p++) {
-            double load = one[p].n > 0 ? shell(all[c].r, all[p].r) * (one[p].along_k + one[p].across_k + one[p].along_g / fmax(dt, 1e-30)) : 0;
+            double load = one[p].n > 0
+                              ? shell(all[c].r, all[p].r) * (one[p].along_k + one[p].across_k +
+                                                                one[p].along_g / fmax(dt, 1e-30))
+                              : 0;
             if (load > most) {
                 most = load;
                 best = p;
@@ -181,8 +196,9 @@ static struct traces fill_shell(const struct scene *scene, const struct limit_cl
         double full = shell(all[c].r, all[best].r), there = (double)(all[best].n - (best == c));
         double n = fmin(full * room, there);
         struct traces t = one[best];
-        traces_add(&sum,
-            (struct traces){n, n * t.along_k, n * t.across_k, n * t.along_g, n * t.across_g, n * t.turn_k, n * t.turn_g, n * t.most_k, n * t.most_g});
+        traces_add(
+            &sum, (struct traces){n, n * t.along_k, n * t.across_k, n * t.along_g, n * t.across_g,
+                      n * t.turn_k, n * t.turn_g, n * t.most_k, n * t.most_g});
         room -= n / full;
         one[best].n = 0; /* used up */
     }
@@ -191,15 +207,19 @@ static struct traces fill_shell(const struct scene *scene, const struct limit_cl
 }
 
 /* The bound of one class; dt: of the dashpots' centring. */
-static double class_limit(const struct scene *scene, const struct limit_class *all, int n_class, int c, double speed, double dt, double share)
+static double class_limit(const struct scene *scene, const struct limit_class *all, int n_class,
+    int c, double speed, double dt, double share)
 {
     double pairs[4], walls[4] = {0, 0, 0, 0}, w[4];
     struct limit_ends ends = {all[c].w, 0, all[c].r, 0};
     eigenvalues(fill_shell(scene, all, n_class, c, speed, dt, share), pairs);
     for (int k = 0; k < scene->n_wall; k++) {
-        struct contact_material m = limit_material_of(scene, all[c].material, scene->wall[k].material);
-        struct traces t = traces_of(limit_deepest(scene, &all[c], NULL, m, speed, dt), ends, share, 1);
-        w[0] = t.along_k + 2 * t.across_k; /* in a corner: along one wall's normal, across those of two */
+        struct contact_material m =
+            limit_material_of(scene, all[c].material, scene->wall[k].material);
+        struct traces t =
+            traces_of(limit_deepest(scene, &all[c], NULL, m, speed, dt), ends, share, 1);
+        /* in a corner: along one wall's normal, across those of two */
+        w[0] = t.along_k + 2 * t.across_k;
         w[1] = t.along_g + 2 * t.across_g;
         w[2] = 2 * t.turn_k;
         w[3] = 2 * t.turn_g;
@@ -218,7 +238,8 @@ double limit_dense(const struct scene *scene, const struct elements_host *elemen
         double dt = 0; /* rises to where the dashpots' centring agrees with it */
         for (int round = 0; round < ROUNDS; round++) {
             double least = LIMIT_NONE;
-            for (int c = 0; c < n_class; c++) least = fmin(least, class_limit(scene, all, n_class, c, speed, dt, share[k]));
+            for (int c = 0; c < n_class; c++)
+                least = fmin(least, class_limit(scene, all, n_class, c, speed, dt, share[k]));
             bool done = least < 1.0005 * dt || !(least < LIMIT_NONE);
             dt = least;
             if (done) break;

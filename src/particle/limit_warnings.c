@@ -10,7 +10,8 @@
 #define SHARE 0.1
 
 /* Extent of elements, walls and domain [m]. */
-static void extent(const struct scene *scene, const struct walls *walls, const struct elements_host *e, double size[3])
+static void extent(const struct scene *scene, const struct walls *walls,
+    const struct elements_host *e, double size[3])
 {
     double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
     for (int64_t i = 0; i < e->n; i++)
@@ -21,7 +22,8 @@ static void extent(const struct scene *scene, const struct walls *walls, const s
     for (int w = 0; walls && w < walls->n_wall; w++)
         for (int a = 0; a < 3; a++) {
             bool plane = walls->wall[w].kind == SURFACE_PLANE;
-            double b[2] = {plane ? walls->wall[w].point[a] : walls->wall_low[3 * w + a], plane ? b[0] : walls->wall_high[3 * w + a]};
+            double b[2] = {plane ? walls->wall[w].point[a] : walls->wall_low[3 * w + a],
+                plane ? b[0] : walls->wall_high[3 * w + a]};
             low[a] = fmin(low[a], b[0]);
             high[a] = fmax(high[a], b[1]);
         }
@@ -38,30 +40,36 @@ static double length(const double a[3])
 
 static double wall_speed(const struct wall *w, const double size[3])
 {
-    return length(w->velocity) + fabs(w->rotation_rate) * length(size) + 2 * M_PI * w->frequency * length(w->amplitude);
+    return length(w->velocity) + fabs(w->rotation_rate) * length(size) +
+           2 * M_PI * w->frequency * length(w->amplitude);
 }
 
-double limit_speed(const struct scene *scene, const struct walls *walls, const struct elements_host *elements)
+double limit_speed(
+    const struct scene *scene, const struct walls *walls, const struct elements_host *elements)
 {
     double size[3], start = 0, wall = 0, potential = 0;
     extent(scene, walls, elements, size);
     for (int64_t i = 0; i < elements->n; i++) start = fmax(start, length(elements->v + 3 * i));
     for (int w = 0; w < scene->n_wall; w++) wall = fmax(wall, wall_speed(&scene->wall[w], size));
     for (int a = 0; a < 3; a++) potential += fabs(scene->gravity[a]) * size[a];
-    return fmin(sqrt(start * start + 2 * potential), start + length(scene->gravity) * scene->time.end) + wall;
+    return fmin(sqrt(start * start + 2 * potential),
+               start + length(scene->gravity) * scene->time.end) +
+           wall;
 }
 
-/* The two ends, the shortest contact and the shortest range over its bond's crossing, as the loop finds them. */
+/* The two ends, the shortest contact and the shortest range over its bond's crossing, as the loop
+ * finds them. */
 struct worst {
     double contact;                 /* [s] shortest contact of a pair or with a wall */
     double bond, range, bond_speed; /* [s] shortest crossing, [m], [m/s] */
 };
 
-/* Half a period of two bodies of effective mass m on their spring: linear pi (m/k)^(1/2); Hertz 2.943 delta/v with k = 1.5 K delta^(1/2) and
- * (2/5) K delta^(5/2) = m v^2/2 is 4.03 (m/k)^(1/2). A bond reaches F_b/k_n; a relative speed v crosses that in F_b/(k_n v). Pairs faster than
- * F_b/(k_n m)^(1/2) are not held by it anyway. */
-static void look(
-    struct worst *worst, const struct scene *scene, const struct limit_class *c, const struct limit_class *p, struct contact_material m, double speed)
+/* Half a period of two bodies of effective mass m on their spring: linear pi (m/k)^(1/2); Hertz
+ * 2.943 delta/v with k = 1.5 K delta^(1/2) and (2/5) K delta^(5/2) = m v^2/2 is 4.03 (m/k)^(1/2). A
+ * bond reaches F_b/k_n; a relative speed v crosses that in F_b/(k_n v). Pairs faster than F_b/(k_n
+ * m)^(1/2) are not held by it anyway. */
+static void look(struct worst *worst, const struct scene *scene, const struct limit_class *c,
+    const struct limit_class *p, struct contact_material m, double speed)
 {
     if (!(m.k_n > 0)) return;
     struct limit_contact k = limit_deepest(scene, c, p, m, speed, 0);
@@ -69,7 +77,8 @@ static void look(
     worst->contact = fmin(worst->contact, (limit_is_hertz(m) ? 4.03 : M_PI) * sqrt(m_star / k.k_n));
     if (!(m.f_b > 0)) return;
     struct limit_ends ends = {c->w, p ? p->w : 0, c->r, p ? p->r : 0};
-    double range = limit_is_hertz(m) ? pow(m.f_b / (m.k_n * sqrt(limit_r_star(ends))), 2.0 / 3.0) : m.f_b / m.k_n;
+    double range = limit_is_hertz(m) ? pow(m.f_b / (m.k_n * sqrt(limit_r_star(ends))), 2.0 / 3.0)
+                                     : m.f_b / m.k_n;
     double energy = (limit_is_hertz(m) ? 0.4 : 0.5) * m.f_b * range;
     double v = fmin(speed, sqrt(2 * energy / m_star));
     if (!(v > 0) || range / v >= worst->bond) return;
@@ -78,7 +87,8 @@ static void look(
     worst->bond_speed = v;
 }
 
-void limit_warnings(const struct scene *scene, const struct elements_host *elements, double speed, double dt, struct scene_errors *warnings)
+void limit_warnings(const struct scene *scene, const struct elements_host *elements, double speed,
+    double dt, struct scene_errors *warnings)
 {
     int n_class;
     struct limit_class *all = limit_classes(scene, elements, &n_class);
@@ -87,22 +97,29 @@ void limit_warnings(const struct scene *scene, const struct elements_host *eleme
     for (int c = 0; c < n_class; c++) {
         r = fmin(r, all[c].r);
         for (int p = 0; p <= c; p++)
-            if (p != c || all[c].n > 1) look(&worst, scene, &all[c], &all[p], limit_material_of(scene, all[c].material, all[p].material), speed);
+            if (p != c || all[c].n > 1)
+                look(&worst, scene, &all[c], &all[p],
+                    limit_material_of(scene, all[c].material, all[p].material), speed);
         for (int w = 0; w < scene->n_wall; w++)
-            look(&worst, scene, &all[c], NULL, limit_material_of(scene, all[c].material, scene->wall[w].material), speed);
+            look(&worst, scene, &all[c], NULL,
+                limit_material_of(scene, all[c].material, scene->wall[w].material), speed);
     }
     free(all);
     if (worst.contact < CONTACT_STEPS * dt)
-        scene_errors_add(warnings, "the shortest contact lasts %.3g s, %.1f time steps of %.3g s; below %d its restitution is inaccurate",
+        scene_errors_add(warnings,
+            "the shortest contact lasts %.3g s, %.1f time steps of %.3g s; below %d its "
+            "restitution is inaccurate",
             worst.contact, worst.contact / dt, dt, CONTACT_STEPS);
     if (speed * dt > SHARE * r)
         scene_errors_add(warnings,
-            "at %.3g m/s, the fastest that this scene allows, elements move %.2g of the smallest radius in one time step; above "
+            "at %.3g m/s, the fastest that this scene allows, elements move %.2g of the smallest "
+            "radius in one time step; above "
             "%.1f contacts begin too deep",
             speed, speed * dt / r, SHARE);
     if (SHARE * worst.bond < dt)
         scene_errors_add(warnings,
-            "bonds reach %.3g m (binding force over stiffness); at %.3g m/s, where they just hold, that is crossed in %.1f time "
+            "bonds reach %.3g m (binding force over stiffness); at %.3g m/s, where they just "
+            "hold, that is crossed in %.1f time "
             "steps; below %.0f bonds break at the wrong moment",
             worst.range, worst.bond_speed, worst.bond / dt, 1 / SHARE);
 }

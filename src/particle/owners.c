@@ -7,12 +7,15 @@
 #include "comm/fail.h"
 #include "owners_message.h"
 
-struct owners *owners_create(struct device *dev, const struct comm *comm, const struct features *features, const struct program *lists,
-    const double period[3], const double domain[6])
+struct owners *owners_create(struct device *dev, const struct comm *comm,
+    const struct features *features, const struct program *lists, const double period[3],
+    const double domain[6])
 {
     struct owners *o = fail_alloc(sizeof *o);
-    struct buffer *all[] = {&o->node, &o->cut, &o->domain, &o->owner, &o->stay, &o->leave, &o->index, &o->old_index, &o->picked};
-    static const char *const name[] = {"cut tree", "cuts", "domain", "owner", "stay", "leave", "leaving", "old index", "picked"};
+    struct buffer *all[] = {&o->node, &o->cut, &o->domain, &o->owner, &o->stay, &o->leave,
+        &o->index, &o->old_index, &o->picked};
+    static const char *const name[] = {
+        "cut tree", "cuts", "domain", "owner", "stay", "leave", "leaving", "old index", "picked"};
     o->comm = comm;
     o->features = features;
     for (int i = 0; i < 9; i++) {
@@ -35,7 +38,8 @@ struct owners *owners_create(struct device *dev, const struct comm *comm, const 
 void owners_free(struct device *dev, struct owners *o)
 {
     if (!o) return;
-    struct buffer *all[] = {&o->node, &o->cut, &o->domain, &o->owner, &o->stay, &o->leave, &o->index, &o->old_index, &o->picked};
+    struct buffer *all[] = {&o->node, &o->cut, &o->domain, &o->owner, &o->stay, &o->leave,
+        &o->index, &o->old_index, &o->picked};
     for (int i = 0; i < 9; i++) buffer_free(dev, all[i]);
     struct launch *launch[] = {o->select, o->compact, o->number, o->gather};
     for (int i = 0; i < 4; i++) launch_free(launch[i]);
@@ -61,7 +65,8 @@ void owners_set_tree(struct device *dev, struct owners *o, const struct rcb *rcb
 }
 
 /* Owner of each element; stay flags; returns how many leave this rank. */
-static int64_t find_leaving(struct device *dev, struct owners *o, struct scan *scan, struct particles *p)
+static int64_t find_leaving(
+    struct device *dev, struct owners *o, struct scan *scan, struct particles *p)
 {
     size_t n = (size_t)p->n_owned;
     buffer_reserve(dev, &o->owner, n * sizeof(cl_int));
@@ -81,7 +86,8 @@ static int64_t find_leaving(struct device *dev, struct owners *o, struct scan *s
 }
 
 /* Rows of a device array picked by o->index, on the host. */
-static void *pick(struct device *dev, struct owners *o, const struct buffer *from, size_t bytes, int64_t n)
+static void *pick(
+    struct device *dev, struct owners *o, const struct buffer *from, size_t bytes, int64_t n)
 {
     void *rows = fail_alloc((size_t)n * bytes);
     if (bytes == 0) return rows;
@@ -98,10 +104,12 @@ static void *pick(struct device *dev, struct owners *o, const struct buffer *fro
 
 static double number(const char *record, bool is_float, int k)
 {
-    return is_float ? (double)((const float *)(const void *)record)[k] : ((const double *)(const void *)record)[k];
+    return is_float ? (double)((const float *)(const void *)record)[k]
+                    : ((const double *)(const void *)record)[k];
 }
 
-static void remember_removed(struct owners *o, const struct owners_leaving *l, const int *owner, int64_t n)
+static void remember_removed(
+    struct owners *o, const struct owners_leaving *l, const int *owner, int64_t n)
 {
     o->n_removed = 0;
     for (int64_t i = 0; i < n; i++) {
@@ -122,8 +130,8 @@ static void remember_removed(struct owners *o, const struct owners_leaving *l, c
 }
 
 /* Takes the leaving elements off this rank and brings in those of others. */
-static struct owners_arriving exchange(
-    struct device *dev, struct owners *o, struct scan *scan, struct particles *p, struct pairs *pairs, struct wall_contacts *walls, int64_t n_leave)
+static struct owners_arriving exchange(struct device *dev, struct owners *o, struct scan *scan,
+    struct particles *p, struct pairs *pairs, struct wall_contacts *walls, int64_t n_leave)
 {
     struct owners_leaving l = {.n = n_leave};
     buffer_reserve(dev, &o->index, (size_t)n_leave * sizeof(cl_int));
@@ -136,12 +144,15 @@ static struct owners_arriving exchange(
         l.bytes[i] = p->field[i].bytes;
         l.field[i] = pick(dev, o, &p->field[i].now, l.bytes[i], n_leave);
     }
-    owners_pick_contacts(dev, &l.pair, scan, &o->index, n_leave, pairs, NULL, particles_real(o->features));
-    owners_pick_contacts(dev, &l.wall, scan, &o->index, n_leave, NULL, walls, particles_real(o->features));
+    owners_pick_contacts(
+        dev, &l.pair, scan, &o->index, n_leave, pairs, NULL, particles_real(o->features));
+    owners_pick_contacts(
+        dev, &l.wall, scan, &o->index, n_leave, NULL, walls, particles_real(o->features));
     remember_removed(o, &l, owner, n_leave);
     int64_t *bytes_to = fail_alloc((size_t)o->comm->n_rank * sizeof *bytes_to),
             *bytes_from = fail_alloc((size_t)o->comm->n_rank * sizeof *bytes_from);
-    void *send = owners_pack(&l, owner, o->comm->n_rank, bytes_to), *recv = migrate_bytes(o->comm, send, bytes_to, bytes_from);
+    void *send = owners_pack(&l, owner, o->comm->n_rank, bytes_to),
+         *recv = migrate_bytes(o->comm, send, bytes_to, bytes_from);
     int64_t total = 0;
     for (int r = 0; r < o->comm->n_rank; r++) total += bytes_from[r];
     o->n_moved = n_leave - o->n_removed;
@@ -155,8 +166,9 @@ static struct owners_arriving exchange(
     return a;
 }
 
-void owners_move(struct device *dev, struct owners *o, struct cells *cells, struct scan *scan, struct particles *p, struct pairs *pairs,
-    struct wall_contacts *walls, const struct cells_bounds *bounds)
+void owners_move(struct device *dev, struct owners *o, struct cells *cells, struct scan *scan,
+    struct particles *p, struct pairs *pairs, struct wall_contacts *walls,
+    const struct cells_bounds *bounds)
 {
     int64_t n_leave = find_leaving(dev, o, scan, p), n_any = n_leave, n_old = p->n_owned;
     struct owners_arriving a = {0};
@@ -178,15 +190,21 @@ void owners_move(struct device *dev, struct owners *o, struct cells *cells, stru
     }
     particles_swap(p);
     for (int i = 0; i < FIELD_N; i++)
-        buffer_write(dev, &p->field[i].now, (size_t)n_keep * p->field[i].bytes, (size_t)a.n * p->field[i].bytes, a.field[i]);
+        buffer_write(dev, &p->field[i].now, (size_t)n_keep * p->field[i].bytes,
+            (size_t)a.n * p->field[i].bytes, a.field[i]);
     if (a.n > 0) {
         cl_int *number = fail_alloc((size_t)a.n * sizeof *number);
         for (int64_t i = 0; i < a.n; i++) number[i] = (cl_int)(n_old + i);
-        buffer_write(dev, &o->old_index, (size_t)n_keep * sizeof *number, (size_t)a.n * sizeof *number, number);
+        buffer_write(dev, &o->old_index, (size_t)n_keep * sizeof *number,
+            (size_t)a.n * sizeof *number, number);
         free(number);
     }
-    if (pairs) owners_store_contacts(dev, &pairs->arrivals, &a.pair, a.n, sizeof(int64_t), pairs->layout.history, particles_real(o->features));
-    if (walls) owners_store_contacts(dev, &walls->arrivals, &a.wall, a.n, sizeof(cl_int), walls->layout.history, particles_real(o->features));
+    if (pairs)
+        owners_store_contacts(dev, &pairs->arrivals, &a.pair, a.n, sizeof(int64_t),
+            pairs->layout.history, particles_real(o->features));
+    if (walls)
+        owners_store_contacts(dev, &walls->arrivals, &a.wall, a.n, sizeof(cl_int),
+            walls->layout.history, particles_real(o->features));
     p->n_owned = n_new;
     p->n_ghost = 0;
     particles_reserve(dev, p, o->features, n_new, n_new);

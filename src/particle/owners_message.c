@@ -11,11 +11,13 @@ static char *rows_of_planes(const char *plane, int width, int64_t capacity, int6
     char *row = fail_alloc((size_t)n * (size_t)width * real);
     for (int64_t k = 0; k < n; k++)
         for (int c = 0; c < width; c++)
-            memcpy(row + ((size_t)k * (size_t)width + (size_t)c) * real, plane + ((size_t)c * (size_t)capacity + (size_t)k) * real, real);
+            memcpy(row + ((size_t)k * (size_t)width + (size_t)c) * real,
+                plane + ((size_t)c * (size_t)capacity + (size_t)k) * real, real);
     return row;
 }
 
-static void bind_leave(struct launch *k, const struct pairs *pairs, const struct wall_contacts *walls)
+static void bind_leave(
+    struct launch *k, const struct pairs *pairs, const struct wall_contacts *walls)
 {
     if (pairs) {
         const struct pair_list *l = &pairs->now;
@@ -36,8 +38,9 @@ static void bind_leave(struct launch *k, const struct pairs *pairs, const struct
     }
 }
 
-void owners_pick_contacts(struct device *dev, struct owners_contacts *c, struct scan *scan, const struct buffer *index, int64_t n,
-    struct pairs *pairs, struct wall_contacts *walls, size_t real)
+void owners_pick_contacts(struct device *dev, struct owners_contacts *c, struct scan *scan,
+    const struct buffer *index, int64_t n, struct pairs *pairs, struct wall_contacts *walls,
+    size_t real)
 {
     const struct contact_layout *layout = pairs ? &pairs->layout : walls ? &walls->layout : NULL;
     size_t key_bytes = pairs ? sizeof(int64_t) : sizeof(cl_int);
@@ -77,7 +80,8 @@ void owners_pick_contacts(struct device *dev, struct owners_contacts *c, struct 
     buffer_read(dev, &out.key, 0, total * key_bytes, key);
     buffer_read(dev, &out.state, 0, total * sizeof(cl_int), c->state);
     buffer_read(dev, &out.history, 0, total * c->history_bytes, plane);
-    for (size_t i = 0; i < total; i++) c->key[i] = pairs ? ((int64_t *)(void *)key)[i] : ((cl_int *)(void *)key)[i];
+    for (size_t i = 0; i < total; i++)
+        c->key[i] = pairs ? ((int64_t *)(void *)key)[i] : ((cl_int *)(void *)key)[i];
     c->history = rows_of_planes(plane, layout->history, (int64_t)total, (int64_t)total, real);
     free(key);
     free(plane);
@@ -130,8 +134,10 @@ void *owners_pack(const struct owners_leaving *l, const int *owner, int n_rank, 
     for (int64_t i = 0; i < l->n; i++) {
         if (owner[i] < 0) continue;
         char *to = at[owner[i]];
-        int32_t n[2] = {l->pair.begin[i + 1] - l->pair.begin[i], l->wall.begin[i + 1] - l->wall.begin[i]};
-        for (int f = 0; f < FIELD_N; f++) to = put(to, (const char *)l->field[f] + (size_t)i * l->bytes[f], l->bytes[f]);
+        int32_t n[2] = {
+            l->pair.begin[i + 1] - l->pair.begin[i], l->wall.begin[i + 1] - l->wall.begin[i]};
+        for (int f = 0; f < FIELD_N; f++)
+            to = put(to, (const char *)l->field[f] + (size_t)i * l->bytes[f], l->bytes[f]);
         to = put(to, n, sizeof n);
         to = put_contacts(to, &l->pair, i);
         at[owner[i]] = put_contacts(to, &l->wall, i);
@@ -158,7 +164,8 @@ static const char *take_contacts(struct owners_contacts *c, const char *from, in
     return from;
 }
 
-static void make_contacts(struct owners_contacts *c, size_t history_bytes, int64_t n, size_t n_contact)
+static void make_contacts(
+    struct owners_contacts *c, size_t history_bytes, int64_t n, size_t n_contact)
 {
     c->history_bytes = history_bytes;
     c->begin = fail_alloc(((size_t)n + 1) * sizeof *c->begin);
@@ -167,7 +174,8 @@ static void make_contacts(struct owners_contacts *c, size_t history_bytes, int64
     c->history = fail_alloc(n_contact * history_bytes);
 }
 
-struct owners_arriving owners_unpack(const struct owners_leaving *like, const void *data, int64_t bytes)
+struct owners_arriving owners_unpack(
+    const struct owners_leaving *like, const void *data, int64_t bytes)
 {
     struct owners_arriving a = {0};
     const char *from = data, *end = from + bytes;
@@ -185,7 +193,8 @@ struct owners_arriving owners_unpack(const struct owners_leaving *like, const vo
     make_contacts(&a.wall, like->wall.history_bytes, a.n, n_wall);
     for (int64_t i = 0; i < a.n; i++) {
         int32_t n[2];
-        for (int f = 0; f < FIELD_N; f++) from = take(a.field[f] + (size_t)i * like->bytes[f], from, like->bytes[f]);
+        for (int f = 0; f < FIELD_N; f++)
+            from = take(a.field[f] + (size_t)i * like->bytes[f], from, like->bytes[f]);
         from = take(n, from, sizeof n);
         from = take_contacts(&a.pair, from, i, n[0]);
         from = take_contacts(&a.wall, from, i, n[1]);
@@ -193,8 +202,8 @@ struct owners_arriving owners_unpack(const struct owners_leaving *like, const vo
     return a;
 }
 
-void owners_store_contacts(
-    struct device *dev, struct contact_arrivals *a, const struct owners_contacts *c, int64_t n, size_t key_bytes, int width, size_t real)
+void owners_store_contacts(struct device *dev, struct contact_arrivals *a,
+    const struct owners_contacts *c, int64_t n, size_t key_bytes, int width, size_t real)
 {
     size_t total = n > 0 ? (size_t)c->begin[n] : 0;
     a->n = n;
@@ -204,14 +213,17 @@ void owners_store_contacts(
     cl_int *small = fail_alloc(total * sizeof *small);
     for (size_t k = 0; k < total; k++) {
         small[k] = (cl_int)c->key[k];
-        for (int w = 0; w < width; w++) memcpy(plane + ((size_t)w * total + k) * real, c->history + k * c->history_bytes + (size_t)w * real, real);
+        for (int w = 0; w < width; w++)
+            memcpy(plane + ((size_t)w * total + k) * real,
+                c->history + k * c->history_bytes + (size_t)w * real, real);
     }
     buffer_reserve(dev, &a->begin, ((size_t)n + 1) * sizeof(cl_int));
     buffer_reserve(dev, &a->key, total * key_bytes);
     buffer_reserve(dev, &a->state, total * sizeof(cl_int));
     buffer_reserve(dev, &a->history, total * c->history_bytes);
     buffer_write(dev, &a->begin, 0, ((size_t)n + 1) * sizeof(cl_int), c->begin);
-    buffer_write(dev, &a->key, 0, total * key_bytes, key_bytes == sizeof *c->key ? (const void *)c->key : small);
+    buffer_write(dev, &a->key, 0, total * key_bytes,
+        key_bytes == sizeof *c->key ? (const void *)c->key : small);
     buffer_write(dev, &a->state, 0, total * sizeof(cl_int), c->state);
     buffer_write(dev, &a->history, 0, total * c->history_bytes, plane);
     free(plane);

@@ -5,19 +5,21 @@
 
 #include "comm/fail.h"
 
-enum { PAIR_ALIGN = 64, ROW_FOUND = 32, LIST_BUFFERS = 11 }; /* the first two as in kernels/particle/pairs.cl, rows.cl */
+/* the first two as in kernels/particle/pairs.cl, rows.cl */
+enum { PAIR_ALIGN = 64, ROW_FOUND = 32, LIST_BUFFERS = 11 };
 
 static void list_buffers(struct pair_list *l, struct buffer *all[LIST_BUFFERS])
 {
-    struct buffer *b[LIST_BUFFERS] = {&l->row_begin, &l->row, &l->row_gid, &l->split, &l->up_begin, &l->incidence_begin, &l->incidence, &l->pair_i,
-        &l->pair_j, &l->state, &l->history};
+    struct buffer *b[LIST_BUFFERS] = {&l->row_begin, &l->row, &l->row_gid, &l->split, &l->up_begin,
+        &l->incidence_begin, &l->incidence, &l->pair_i, &l->pair_j, &l->state, &l->history};
     memcpy(all, b, sizeof b);
 }
 
 static void list_init(struct device *dev, struct pair_list *l)
 {
-    static const char *const name[LIST_BUFFERS] = {
-        "row begin", "rows", "row gids", "row split", "up begin", "incidence begin", "incidence", "pair i", "pair j", "pair state", "pair history"};
+    static const char *const name[LIST_BUFFERS] = {"row begin", "rows", "row gids", "row split",
+        "up begin", "incidence begin", "incidence", "pair i", "pair j", "pair state",
+        "pair history"};
     struct buffer *all[LIST_BUFFERS];
     list_buffers(l, all);
     for (int i = 0; i < LIST_BUFFERS; i++) {
@@ -26,7 +28,8 @@ static void list_init(struct device *dev, struct pair_list *l)
     }
 }
 
-struct pairs *pairs_create(struct device *dev, const struct features *features, const struct program *lists, const struct program *force)
+struct pairs *pairs_create(struct device *dev, const struct features *features,
+    const struct program *lists, const struct program *force)
 {
     struct pairs *pairs = fail_alloc(sizeof *pairs);
     pairs->features = features;
@@ -34,8 +37,10 @@ struct pairs *pairs_create(struct device *dev, const struct features *features, 
     list_init(dev, &pairs->now);
     list_init(dev, &pairs->old);
     contact_arrivals_init(dev, &pairs->arrivals, "arrived pairs");
-    struct buffer *own[] = {&pairs->interior, &pairs->boundary, &pairs->result, &pairs->ledger, &pairs->found};
-    static const char *const name[] = {"interior pairs", "boundary pairs", "pair results", "pair ledger", "neighbours found"};
+    struct buffer *own[] = {
+        &pairs->interior, &pairs->boundary, &pairs->result, &pairs->ledger, &pairs->found};
+    static const char *const name[] = {
+        "interior pairs", "boundary pairs", "pair results", "pair ledger", "neighbours found"};
     for (int i = 0; i < 5; i++) {
         buffer_init(own[i], name[i]);
         buffer_reserve(dev, own[i], 64);
@@ -59,14 +64,17 @@ void pairs_free(struct device *dev, struct pairs *pairs)
         for (int i = 0; i < LIST_BUFFERS; i++) buffer_free(dev, all[i]);
     }
     contact_arrivals_free(dev, &pairs->arrivals);
-    struct buffer *own[] = {&pairs->interior, &pairs->boundary, &pairs->result, &pairs->ledger, &pairs->found};
+    struct buffer *own[] = {
+        &pairs->interior, &pairs->boundary, &pairs->result, &pairs->ledger, &pairs->found};
     for (int i = 0; i < 5; i++) buffer_free(dev, own[i]);
-    struct launch *launch[] = {pairs->rows, pairs->count, pairs->fill, pairs->link, pairs->carry, pairs->leave};
+    struct launch *launch[] = {
+        pairs->rows, pairs->count, pairs->fill, pairs->link, pairs->carry, pairs->leave};
     for (int i = 0; i < 6; i++) launch_free(launch[i]);
     free(pairs);
 }
 
-static void build_rows(struct device *dev, struct pairs *pairs, struct cells *cells, struct scan *scan, const struct particles *p)
+static void build_rows(struct device *dev, struct pairs *pairs, struct cells *cells,
+    struct scan *scan, const struct particles *p)
 {
     struct pair_list *l = &pairs->now;
     struct launch *rows = pairs->rows;
@@ -99,7 +107,8 @@ static void build_rows(struct device *dev, struct pairs *pairs, struct cells *ce
     }
 }
 
-static void count_pairs(struct device *dev, struct pairs *pairs, struct scan *scan, const struct particles *p)
+static void count_pairs(
+    struct device *dev, struct pairs *pairs, struct scan *scan, const struct particles *p)
 {
     struct pair_list *l = &pairs->now;
     size_t per_element = ((size_t)l->n_all + 1) * sizeof(cl_int);
@@ -127,11 +136,15 @@ static void count_pairs(struct device *dev, struct pairs *pairs, struct scan *sc
     l->first_boundary = (l->n_interior + PAIR_ALIGN - 1) / PAIR_ALIGN * PAIR_ALIGN;
     int64_t n = l->first_boundary + l->n_boundary;
     if (n > INT32_MAX / 2 - 4 * PAIR_ALIGN || l->n_row > INT32_MAX / 2)
-        fail_stop(EXIT_DEVICE, "%lld pairs on one rank are more than its lists can number; use more ranks", (long long)n);
-    l->capacity = (n + PAIR_ALIGN - 1) / PAIR_ALIGN * PAIR_ALIGN + 16; /* not a power of two, so that planes do not fall onto each other in caches */
+        fail_stop(EXIT_DEVICE,
+            "%lld pairs on one rank are more than its lists can number; use more ranks",
+            (long long)n);
+    /* not a power of two, so that planes do not fall onto each other in caches */
+    l->capacity = (n + PAIR_ALIGN - 1) / PAIR_ALIGN * PAIR_ALIGN + 16;
 }
 
-/* Room for a record per pair; the last one stays zero, for the blank pair of kernels/particle/incidence.h. */
+/* Room for a record per pair; the last one stays zero, for the blank pair of
+ * kernels/particle/incidence.h. */
 static void reserve_results(struct device *dev, struct pairs *pairs, size_t real)
 {
     size_t capacity = (size_t)pairs->now.capacity, bytes = (size_t)pairs->layout.result * real;
@@ -177,7 +190,8 @@ static void fill_pairs(struct device *dev, struct pairs *pairs, const struct par
     buffer_zero(dev, &l->history);
 }
 
-void pairs_build(struct device *dev, struct pairs *pairs, struct cells *cells, struct scan *scan, const struct particles *p)
+void pairs_build(struct device *dev, struct pairs *pairs, struct cells *cells, struct scan *scan,
+    const struct particles *p)
 {
     struct pair_list older = pairs->old;
     pairs->old = pairs->now;
@@ -188,12 +202,14 @@ void pairs_build(struct device *dev, struct pairs *pairs, struct cells *cells, s
     count_pairs(dev, pairs, scan, p);
     fill_pairs(dev, pairs, p);
     if (pairs->features->energy) {
-        buffer_reserve(dev, &pairs->ledger, (size_t)pairs->now.capacity * CONTACT_LEDGER_WIDTH * sizeof(cl_double));
+        buffer_reserve(dev, &pairs->ledger,
+            (size_t)pairs->now.capacity * CONTACT_LEDGER_WIDTH * sizeof(cl_double));
         buffer_zero(dev, &pairs->ledger);
     }
 }
 
-void pairs_carry(struct device *dev, struct pairs *pairs, const struct particles *p, const struct buffer *old_index)
+void pairs_carry(struct device *dev, struct pairs *pairs, const struct particles *p,
+    const struct buffer *old_index)
 {
     struct pair_list *l = &pairs->now, *o = &pairs->old;
     struct launch *k = pairs->carry;
@@ -210,11 +226,14 @@ void pairs_carry(struct device *dev, struct pairs *pairs, const struct particles
     const struct {
         const char *name;
         const struct buffer *buffer;
-    } bind[] = {{"gid", &p->field[FIELD_GID].now}, {"pair_i", &l->pair_i}, {"pair_j", &l->pair_j}, {"old_index", old_index},
-        {"old_row_begin", &o->row_begin}, {"old_row_gid", &o->row_gid}, {"old_incidence_begin", &o->incidence_begin},
-        {"old_incidence", &o->incidence}, {"arrival_begin", &pairs->arrivals.begin}, {"arrival_gid", &pairs->arrivals.key},
-        {"arrival_state", &pairs->arrivals.state}, {"arrival_history", &pairs->arrivals.history}, {"old_state", &o->state},
-        {"old_history", &o->history}, {"state", &l->state}, {"history", &l->history}};
-    for (size_t i = 0; i < sizeof bind / sizeof *bind; i++) launch_bind_buffer(k, bind[i].name, bind[i].buffer);
+    } bind[] = {{"gid", &p->field[FIELD_GID].now}, {"pair_i", &l->pair_i}, {"pair_j", &l->pair_j},
+        {"old_index", old_index}, {"old_row_begin", &o->row_begin}, {"old_row_gid", &o->row_gid},
+        {"old_incidence_begin", &o->incidence_begin}, {"old_incidence", &o->incidence},
+        {"arrival_begin", &pairs->arrivals.begin}, {"arrival_gid", &pairs->arrivals.key},
+        {"arrival_state", &pairs->arrivals.state}, {"arrival_history", &pairs->arrivals.history},
+        {"old_state", &o->state}, {"old_history", &o->history}, {"state", &l->state},
+        {"history", &l->history}};
+    for (size_t i = 0; i < sizeof bind / sizeof *bind; i++)
+        launch_bind_buffer(k, bind[i].name, bind[i].buffer);
     launch_run(k, dev->compute, l->first_boundary + l->n_boundary, 0, NULL, NULL);
 }

@@ -1,5 +1,6 @@
-/* The parts of the particle method, by file: particle_input.c, particle_setup.c, particle_resume.c, particle_cut.c, particle_regroup.c,
- * particle_step.c, particle_limit.c, particle_frame.c, particle_contacts.c, particle_measures.c, particle_report.c. What step.h describes is not
+/* The parts of the particle method, by file: particle_input.c, particle_setup.c, particle_resume.c,
+ * particle_cut.c, particle_regroup.c, particle_step.c, particle_limit.c, particle_frame.c,
+ * particle_contacts.c, particle_measures.c, particle_report.c. What step.h describes is not
  * described again. */
 #ifndef DEMOCLES_PARTICLE_H
 #define DEMOCLES_PARTICLE_H
@@ -17,7 +18,8 @@ struct particle_run {
     struct walls *walls;
     double domain[6], period[3]; /* box low, high [m]; 0 where not periodic */
     struct elements_host *first; /* as generated, all elements on every rank */
-    int64_t *left;               /* [n_measure] elements that left the run where a count holds, on this rank */
+    /* [n_measure] elements that left the run where a count holds, on this rank */
+    int64_t *left;
     struct program *program_lists, *program_pair, *program_wall, *program_body, *program_assign;
     struct particles *particles;
     struct cells *cells;
@@ -26,7 +28,8 @@ struct particle_run {
     struct wall_contacts *wall_contacts; /* NULL without walls */
     struct owners *owners;
     struct ghosts *ghosts;
-    struct assigned *assigned; /* NULL: cut pairs are computed on both ranks, or there is one rank */
+    /* NULL: cut pairs are computed on both ranks, or there is one rank */
+    struct assigned *assigned;
     struct rcb *rcb;
     struct launch *select_room, *pair_force, *wall_force, *gather, *kick_drift;
     struct buffer table_pair, table_wall;
@@ -50,24 +53,28 @@ void particle_free(struct sim *s);
 void particle_regroup(struct sim *s);
 /* A new tree of cuts by the scene's method; elements have not moved yet. Collective. */
 void particle_cut(struct sim *s);
-/* Ghosts, lists and everything that depends on their sizes, for owned elements that are in place. Collective. particle_lists: where also their room
- * to move is. */
+/* Ghosts, lists and everything that depends on their sizes, for owned elements that are in place.
+ * Collective. particle_lists: where also their room to move is. */
 void particle_build(struct sim *s);
 void particle_lists(struct sim *s);
-/* In place of the start of a run: elements, lists and all that they remember from the frame s->from. Collective. */
+/* In place of the start of a run: elements, lists and all that they remember from the frame
+ * s->from. Collective. */
 void particle_resume(struct sim *s);
-/* Owners by cuts through the places x [n][3] of all ranks, by place alone: nothing is known yet of interactions. Collective. */
+/* Owners by cuts through the places x [n][3] of all ranks, by place alone: nothing is known yet of
+ * interactions. Collective. */
 void particle_spread(struct sim *s, const double *x, int64_t n);
 /* Forces of pairs and walls at the present step, into the result records. */
 void particle_forces(struct sim *s);
 /* Binds the step's kernels to buffers; sets sizes. After every build. */
 void particle_bind(struct sim *s);
 
-/* Largest safe time step by the bound of kernels/contact/law_limit.h over the contacts of now, and the element that sets it (limit.h). Never over
- * what is safe; where it is not below s->dt, no further than needed to say so. Collective. */
+/* Largest safe time step by the bound of kernels/contact/law_limit.h over the contacts of now, and
+ * the element that sets it (limit.h). Never over what is safe; where it is not below s->dt, no
+ * further than needed to say so. Collective. */
 struct limit_result particle_limit(struct sim *s);
-/* The limit [s] for the densest packing that the scene's elements can form, at the speeds that its geometry allows: what `step: auto` starts from;
- * infinity if nothing can touch. Reads the scene, the walls and the first elements alone. */
+/* The limit [s] for the densest packing that the scene's elements can form, at the speeds that its
+ * geometry allows: what `step: auto` starts from; infinity if nothing can touch. Reads the scene,
+ * the walls and the first elements alone. */
 double particle_limit_dense(const struct sim *s);
 
 void particle_check_limit(struct sim *s);
@@ -77,7 +84,8 @@ int64_t particle_owned(const struct sim *s);
 void particle_frame(struct sim *s, int64_t index);
 int particle_measure_columns(enum measure_kind kind, const struct series_column **column);
 void particle_measure(struct sim *s, const bool *due, double (*value)[MEASURE_COLUMNS]);
-/* An element has left the run at x [m]: counts whose region holds the place go on counting it. Not collective. */
+/* An element has left the run at x [m]: counts whose region holds the place go on counting it. Not
+ * collective. */
 void particle_left(struct sim *s, const double x[3]);
 bool particle_digest(struct sim *s, uint64_t *digest);
 void particle_count(const struct sim *s, struct step_counts *counts);

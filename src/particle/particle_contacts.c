@@ -11,7 +11,8 @@
 /* The contacts of a list on this rank, by their places in it. */
 struct list {
     int64_t n, capacity;
-    int64_t *id, *other; /* [n] lower element of a pair and higher; element and primitive; -1 in gaps */
+    /* [n] lower element of a pair and higher; element and primitive; -1 in gaps */
+    int64_t *id, *other;
     unsigned char *mine; /* [n] whether the contact counts on this rank */
     struct contact_layout layout;
     struct buffer *state, *history, *ledger;
@@ -66,7 +67,8 @@ static struct list walls_of(struct sim *s)
     int64_t *gid = fail_alloc((size_t)w->now.n_owned * sizeof *gid);
     buffer_read(s->dev, &w->now.element, 0, n * sizeof *e, e);
     buffer_read(s->dev, &w->now.candidate, 0, n * sizeof *k, k);
-    buffer_read(s->dev, &run->particles->field[FIELD_GID].now, 0, (size_t)w->now.n_owned * sizeof *gid, gid);
+    buffer_read(s->dev, &run->particles->field[FIELD_GID].now, 0,
+        (size_t)w->now.n_owned * sizeof *gid, gid);
     for (size_t c = 0; c < n; c++) {
         l.id[c] = gid[e[c]];
         l.other[c] = k[c];
@@ -98,12 +100,14 @@ struct rows {
 };
 
 /* Takes contact k, if it has anything to remember. Planes have `capacity` numbers each. */
-static void take(struct rows *r, const struct list *l, int64_t k, int32_t state, const double *history, const double *ledger)
+static void take(struct rows *r, const struct list *l, int64_t k, int32_t state,
+    const double *history, const double *ledger)
 {
     int width = l->layout.history, any = state != 0;
     double *h = r->history + r->n * width, *e = r->ledger + r->n * LEDGER_WIDTH;
     for (int c = 0; c < width; c++) any |= (h[c] = history[c * l->capacity + k]) != 0;
-    for (int c = 0; c < LEDGER_WIDTH && ledger; c++) any |= (e[c] = ledger[c * l->capacity + k]) != 0;
+    for (int c = 0; c < LEDGER_WIDTH && ledger; c++)
+        any |= (e[c] = ledger[c * l->capacity + k]) != 0;
     if (!any) return;
     r->id[r->n] = l->id[k];
     r->other[r->n] = l->other[k];
@@ -116,8 +120,11 @@ static void read_rows(struct sim *s, const struct list *l, struct rows *r)
     size_t n = (size_t)l->n, planes = (size_t)l->capacity;
     if (!l->layout.remembers || n == 0) return;
     cl_int *state = fail_alloc(n * sizeof *state);
-    double *history = particles_read(s->dev, l->history, run->features.real_is_float, 0, (size_t)l->layout.history * planes);
-    double *ledger = run->features.energy ? particles_read(s->dev, l->ledger, false, 0, LEDGER_WIDTH * planes) : NULL;
+    double *history = particles_read(
+        s->dev, l->history, run->features.real_is_float, 0, (size_t)l->layout.history * planes);
+    double *ledger = run->features.energy
+                         ? particles_read(s->dev, l->ledger, false, 0, LEDGER_WIDTH * planes)
+                         : NULL;
     buffer_read(s->dev, l->state, 0, n * sizeof *state, state);
     for (int64_t k = 0; k < l->n; k++)
         if (l->mine[k]) take(r, l, k, state[k], history, ledger);
@@ -135,17 +142,23 @@ int64_t particle_contacts_sheet(struct sim *s, struct sheet *t, bool wall)
         .other = sheet_keep(t, fail_alloc(n * sizeof *r.other)),
         .state = sheet_keep(t, fail_alloc(n * sizeof *r.state)),
         .history = sheet_keep(t, fail_alloc(n * width * sizeof *r.history)),
-        .ledger = sheet_keep(t, fail_alloc((run->features.energy ? n * LEDGER_WIDTH : 0) * sizeof *r.ledger))};
+        .ledger = sheet_keep(
+            t, fail_alloc((run->features.energy ? n * LEDGER_WIDTH : 0) * sizeof *r.ledger))};
     read_rows(s, &l, &r);
     list_free(&l);
-    sheet_add(t, "id", "1", "global id of the element; of the lower one in a pair", COLUMN_I64, 1, r.id);
-    sheet_add(t, wall ? "primitive" : "partner", "1", "the other element, or the primitive of the wall", COLUMN_I64, 1, r.other);
+    sheet_add(
+        t, "id", "1", "global id of the element; of the lower one in a pair", COLUMN_I64, 1, r.id);
+    sheet_add(t, wall ? "primitive" : "partner", "1",
+        "the other element, or the primitive of the wall", COLUMN_I64, 1, r.other);
     sheet_add(t, "state", "1", "bit 1: touching, bit 2: bonded", COLUMN_I32, 1, r.state);
     if (width > 0)
-        sheet_add_real(t, run->features.real_is_float, "history", "m", "springs and dashpot forces, see kernels/contact/contact_memory.h", (int)width,
+        sheet_add_real(t, run->features.real_is_float, "history", "m",
+            "springs and dashpot forces, see kernels/contact/contact_memory.h", (int)width,
             r.history, (size_t)r.n);
     if (run->features.energy)
-        sheet_add(t, "ledger", "J", "taken since the sums were last made, see kernels/contact/ledger.h", COLUMN_F64, LEDGER_WIDTH, r.ledger);
+        sheet_add(t, "ledger", "J",
+            "taken since the sums were last made, see kernels/contact/ledger.h", COLUMN_F64,
+            LEDGER_WIDTH, r.ledger);
     return r.n;
 }
 
@@ -163,7 +176,8 @@ static int by_key(const void *a, const void *b)
 
 static struct key *sort_keys(const struct frame_table *t, bool wall)
 {
-    const int64_t *id = frame_table_get(t, "id"), *other = frame_table_get(t, wall ? "primitive" : "partner");
+    const int64_t *id = frame_table_get(t, "id"),
+                  *other = frame_table_get(t, wall ? "primitive" : "partner");
     struct key *key = fail_alloc((size_t)t->n * sizeof *key);
     for (int64_t i = 0; i < t->n; i++) key[i] = (struct key){id[i], other[i], i};
     qsort(key, (size_t)t->n, sizeof *key, by_key);
@@ -185,20 +199,26 @@ static int64_t fill(struct sim *s, const struct list *l, const struct frame_tabl
     if (!l->layout.remembers || l->n == 0) return 0;
     struct key *key = sort_keys(t, wall);
     const int32_t *state_of = frame_table_get(t, "state");
-    const double *history_of = frame_table_get(t, "history"), *ledger_of = frame_table_get(t, "ledger");
+    const double *history_of = frame_table_get(t, "history"),
+                 *ledger_of = frame_table_get(t, "ledger");
     cl_int *state = fail_alloc(planes * sizeof *state);
-    double *history = fail_alloc((size_t)width * planes * sizeof *history), *ledger = fail_alloc(LEDGER_WIDTH * planes * sizeof *ledger);
+    double *history = fail_alloc((size_t)width * planes * sizeof *history),
+           *ledger = fail_alloc(LEDGER_WIDTH * planes * sizeof *ledger);
     for (int64_t k = 0; k < l->n; k++) {
-        const struct key wanted = {l->id[k], l->other[k], 0}, *found = bsearch(&wanted, key, (size_t)t->n, sizeof *key, by_key);
+        const struct key wanted = {l->id[k], l->other[k], 0},
+                         *found = bsearch(&wanted, key, (size_t)t->n, sizeof *key, by_key);
         if (!found) continue;
         state[k] = state_of[found->row];
         spread(history, history_of ? history_of + found->row * width : NULL, width, l->capacity, k);
-        spread(ledger, ledger_of ? ledger_of + found->row * LEDGER_WIDTH : NULL, LEDGER_WIDTH, l->capacity, k);
+        spread(ledger, ledger_of ? ledger_of + found->row * LEDGER_WIDTH : NULL, LEDGER_WIDTH,
+            l->capacity, k);
         n_found += l->mine[k];
     }
     buffer_write(s->dev, l->state, 0, planes * sizeof *state, state);
-    particles_write(s->dev, l->history, run->features.real_is_float, 0, (size_t)width * planes, history);
-    if (run->features.energy) particles_write(s->dev, l->ledger, false, 0, LEDGER_WIDTH * planes, ledger);
+    particles_write(
+        s->dev, l->history, run->features.real_is_float, 0, (size_t)width * planes, history);
+    if (run->features.energy)
+        particles_write(s->dev, l->ledger, false, 0, LEDGER_WIDTH * planes, ledger);
     void *own[] = {key, state, history, ledger};
     for (int i = 0; i < 4; i++) free(own[i]);
     return n_found;
@@ -207,7 +227,8 @@ static int64_t fill(struct sim *s, const struct list *l, const struct frame_tabl
 /* A pair that a border cuts is known to both ranks. */
 static void send(struct sim *s, struct frame_table *t, const int32_t *owner, bool wall)
 {
-    const int64_t *id = frame_table_get(t, "id"), *other = frame_table_get(t, wall ? "primitive" : "partner");
+    const int64_t *id = frame_table_get(t, "id"),
+                  *other = frame_table_get(t, wall ? "primitive" : "partner");
     int32_t *to = fail_alloc(2 * (size_t)t->n * sizeof *to);
     for (int64_t i = 0; i < t->n; i++) {
         to[2 * i] = owner[id[i]];
@@ -221,19 +242,22 @@ void particle_contacts_restore(struct sim *s, const int32_t *owner, bool wall)
 {
     const struct h5_reader *reader = s->from->reader;
     struct list l = wall ? walls_of(s) : pairs_of(s);
-    struct frame_table t = frame_table_begin(s->comm, reader, wall ? "wall_contacts" : "pairs", "id");
+    struct frame_table t =
+        frame_table_begin(s->comm, reader, wall ? "wall_contacts" : "pairs", "id");
     frame_table_add(&t, s->comm, reader, "id", COLUMN_I64, 1);
     frame_table_add(&t, s->comm, reader, wall ? "primitive" : "partner", COLUMN_I64, 1);
     frame_table_add(&t, s->comm, reader, "state", COLUMN_I32, 1);
-    if (l.layout.history > 0) frame_table_add(&t, s->comm, reader, "history", COLUMN_F64, l.layout.history);
-    if (s->particle->features.energy) frame_table_add(&t, s->comm, reader, "ledger", COLUMN_F64, LEDGER_WIDTH);
+    if (l.layout.history > 0)
+        frame_table_add(&t, s->comm, reader, "history", COLUMN_F64, l.layout.history);
+    if (s->particle->features.energy)
+        frame_table_add(&t, s->comm, reader, "ledger", COLUMN_F64, LEDGER_WIDTH);
     int64_t n[2] = {t.n, 0};
     send(s, &t, owner, wall);
     n[1] = fill(s, &l, &t, wall);
     comm_sum_i64(s->comm, n, 2);
     if (n[0] != n[1])
-        fail_stop_together(
-            EXIT_IO, "'%s': %lld of %lld contacts of table %s are in no list", s->from->path, (long long)(n[0] - n[1]), (long long)n[0], t.name);
+        fail_stop_together(EXIT_IO, "'%s': %lld of %lld contacts of table %s are in no list",
+            s->from->path, (long long)(n[0] - n[1]), (long long)n[0], t.name);
     frame_table_free(&t);
     list_free(&l);
 }

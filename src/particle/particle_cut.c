@@ -1,10 +1,15 @@
-/* Which rank shall have which elements: a tree of cuts by the scene's method, from positions and listed interactions.
+/* Which rank shall have which elements: a tree of cuts by the scene's method, from positions and
+ * listed interactions.
  *
- *   geometric     the longest side of all elements is cut again and again, elements weighted by their interactions
- *   interactions  the same with an element and each of its pairs a point of its own, pairs at their midpoints
- *   graph         a fine tree whose leaves METIS deals out, so that few pairs lead from rank to rank
+ *   geometric     the longest side of all elements is cut again and again, elements weighted by
+ *     their interactions
+ *   interactions  the same with an element and each of its pairs a point of its own, pairs at their
+ *     midpoints
+ *   graph         a fine tree whose leaves METIS deals out, so that few pairs lead from rank to
+ *     rank
  *
- * Whatever the method, an element goes where its own position is in the tree: who owns what is a function of position, until the next cut too. */
+ * Whatever the method, an element goes where its own position is in the tree: who owns what is a
+ * function of position, until the next cut too. */
 #include "particle.h"
 
 #include <math.h>
@@ -17,8 +22,9 @@
 /* Cuts with raised weights, and how finely weights are kept meanwhile. */
 enum { ROUNDS = 4, FINE = 16 };
 
-/* Owned elements, and positions and number of all. Work, in halves of an interaction: an element counts as one, so does each wall that it may touch;
- * a pair counts half at both ends, and a whole one on both ranks where they are two and both compute it. */
+/* Owned elements, and positions and number of all. Work, in halves of an interaction: an element
+ * counts as one, so does each wall that it may touch; a pair counts half at both ends, and a whole
+ * one on both ranks where they are two and both compute it. */
 struct view {
     int64_t n, n_all;
     double (*x)[3];  /* [n_all] */
@@ -36,7 +42,9 @@ static void read_positions(struct sim *s, struct view *v)
     v->x = fail_alloc((size_t)v->n_all * sizeof *v->x);
     for (int64_t i = 0; i < v->n_all; i++) {
         const void *x = record + (size_t)i * state->bytes;
-        for (int a = 0; a < 3; a++) v->x[i][a] = run->features.position_is_float ? (double)((const float *)x)[a] : ((const double *)x)[a];
+        for (int a = 0; a < 3; a++)
+            v->x[i][a] = run->features.position_is_float ? (double)((const float *)x)[a]
+                                                         : ((const double *)x)[a];
     }
     free(record);
 }
@@ -52,9 +60,11 @@ static struct view view_create(struct sim *s)
     buffer_read(s->dev, &l->row_begin, 0, (n + 1) * sizeof *v.begin, v.begin);
     v.row = fail_alloc((size_t)v.begin[n] * sizeof *v.row);
     buffer_read(s->dev, &l->row, 0, (size_t)v.begin[n] * sizeof *v.row, v.row);
-    if (run->wall_contacts) buffer_read(s->dev, &run->wall_contacts->now.begin, 0, (n + 1) * sizeof *wall, wall);
+    if (run->wall_contacts)
+        buffer_read(s->dev, &run->wall_contacts->now.begin, 0, (n + 1) * sizeof *wall, wall);
     v.weight = fail_alloc(n * sizeof *v.weight);
-    for (size_t i = 0; i < n; i++) v.weight[i] = 2 + 2 * (wall[i + 1] - wall[i]) + v.begin[i + 1] - v.begin[i];
+    for (size_t i = 0; i < n; i++)
+        v.weight[i] = 2 + 2 * (wall[i + 1] - wall[i]) + v.begin[i + 1] - v.begin[i];
     free(wall);
     read_positions(s, &v);
     return v;
@@ -110,20 +120,23 @@ static struct points points_create(const struct sim *s, const struct view *v)
     bool pairs = s->scene->partition.method == PARTITION_INTERACTIONS;
     size_t n = (size_t)v->n + (pairs ? (size_t)v->begin[v->n] : 0);
     struct points p = {0, fail_alloc(n * sizeof *p.x), fail_alloc(n * sizeof *p.weight)};
-    for (int64_t i = 0; i < v->n; i++) add_point(&p, v->x[i], v->weight[i] - (pairs ? v->begin[i + 1] - v->begin[i] : 0));
+    for (int64_t i = 0; i < v->n; i++)
+        add_point(&p, v->x[i], v->weight[i] - (pairs ? v->begin[i + 1] - v->begin[i] : 0));
     if (pairs) add_pairs(s, v, &p);
     return p;
 }
 
 /* Work of each rank, and the imbalance that it makes. */
-static double add_up(const struct sim *s, const struct view *v, const struct rcb *tree, int64_t *work)
+static double add_up(
+    const struct sim *s, const struct view *v, const struct rcb *tree, int64_t *work)
 {
     int *owner = owners(v, tree);
     bool both = s->scene->partition.boundary == CUT_PAIRS_BOTH;
     memset(work, 0, (size_t)s->comm->n_rank * sizeof *work);
     for (int64_t i = 0; i < v->n; i++) {
         int64_t n_far = 0;
-        for (int k = v->begin[i]; k < v->begin[i + 1] && both; k++) n_far += owner[v->row[k]] != owner[i];
+        for (int k = v->begin[i]; k < v->begin[i + 1] && both; k++)
+            n_far += owner[v->row[k]] != owner[i];
         work[owner[i]] += v->weight[i] + n_far;
     }
     comm_sum_i64(s->comm, work, s->comm->n_rank);
@@ -131,8 +144,9 @@ static double add_up(const struct sim *s, const struct view *v, const struct rcb
     return partition_imbalance(work, s->balance->share, s->comm->n_rank);
 }
 
-/* Cutting is exact in the weights of points, but that pairs between ranks are computed twice is known only afterwards: where that leaves a rank with
- * too much, its weights are raised and all is cut again. */
+/* Cutting is exact in the weights of points, but that pairs between ranks are computed twice is
+ * known only afterwards: where that leaves a rank with too much, its weights are raised and all is
+ * cut again. */
 static struct rcb *cut_points(struct sim *s, const struct view *v)
 {
     int n_rank = s->comm->n_rank;
@@ -141,7 +155,8 @@ static struct rcb *cut_points(struct sim *s, const struct view *v)
     double least = HUGE_VAL, all = 0, shares = 0;
     int64_t *work = fail_alloc((size_t)n_rank * sizeof *work);
     for (int round = 0; round < ROUNDS && least > s->scene->partition.threshold; round++) {
-        struct rcb *tree = rcb_create(s->comm, n_rank, s->balance->share, (const double *)p.x, p.weight, p.n);
+        struct rcb *tree =
+            rcb_create(s->comm, n_rank, s->balance->share, (const double *)p.x, p.weight, p.n);
         double imbalance = add_up(s, v, tree, work);
         all = shares = 0;
         for (int r = 0; r < n_rank; r++) {
@@ -150,7 +165,9 @@ static struct rcb *cut_points(struct sim *s, const struct view *v)
         }
         for (int64_t i = 0; i < p.n; i++) {
             int r = rcb_owner(tree, p.x[i]);
-            p.weight[i] = llround(fmax((double)p.weight[i] * (double)work[r] / (double)s->balance->share[r] * shares / all, 1));
+            p.weight[i] = llround(fmax(
+                (double)p.weight[i] * (double)work[r] / (double)s->balance->share[r] * shares / all,
+                1));
         }
         bool is_better = imbalance < least;
         rcb_free(is_better ? best : tree);
@@ -169,8 +186,10 @@ static struct rcb *cut_graph(struct sim *s, const struct view *v)
     int n_leaf = graph_leaves_wanted(s->comm, s->particle->particles->n_global);
     struct rcb *tree = rcb_create(s->comm, n_leaf, NULL, (const double *)v->x, v->weight, v->n);
     int *leaf = owners(v, tree), *owner = fail_alloc((size_t)n_leaf * sizeof *owner);
-    struct graph_elements elements = {v->n, v->weight, v->begin, v->row, leaf, s->scene->partition.boundary == CUT_PAIRS_BOTH};
-    graph_leaves(s->comm, n_leaf, &elements, s->balance->share, s->scene->partition.threshold, owner);
+    struct graph_elements elements = {
+        v->n, v->weight, v->begin, v->row, leaf, s->scene->partition.boundary == CUT_PAIRS_BOTH};
+    graph_leaves(
+        s->comm, n_leaf, &elements, s->balance->share, s->scene->partition.threshold, owner);
     rcb_assign(tree, owner);
     free(leaf);
     free(owner);
@@ -181,7 +200,8 @@ void particle_cut(struct sim *s)
 {
     struct particle_run *run = s->particle;
     struct view v = view_create(s);
-    struct rcb *tree = s->scene->partition.method == PARTITION_GRAPH ? cut_graph(s, &v) : cut_points(s, &v);
+    struct rcb *tree =
+        s->scene->partition.method == PARTITION_GRAPH ? cut_graph(s, &v) : cut_points(s, &v);
     view_free(&v);
     rcb_free(run->rcb);
     run->rcb = tree;

@@ -1,4 +1,5 @@
-/* The particle method before there is a device: walls and elements from the scene, their extent, the time step. */
+/* The particle method before there is a device: walls and elements from the scene, their extent,
+ * the time step. */
 #include "particle.h"
 
 #include <math.h>
@@ -19,7 +20,8 @@ void particle_read(struct sim *s)
     run->first = generate_elements(s->scene, &errors);
     if (run->walls && run->first) generate_check_walls(s->scene, run->walls, run->first, &errors);
     scene_report_errors(s->comm, &errors);
-    if (run->first->n > INT32_MAX / 2) fail_stop_together(EXIT_SCENE, "more than %d elements", INT32_MAX / 2);
+    if (run->first->n > INT32_MAX / 2)
+        fail_stop_together(EXIT_SCENE, "more than %d elements", INT32_MAX / 2);
 }
 
 static uint64_t add(uint64_t sum, enum column_type type, const void *data, int64_t n)
@@ -39,12 +41,14 @@ static void sum_inputs(struct sim *s)
     memcpy(&s->inputs, &sum, sizeof sum);
 }
 
-/* Box of the domain: as given, else around elements and walls with room beyond, so that what falls out of sight is out of it. */
+/* Box of the domain: as given, else around elements and walls with room beyond, so that what falls
+ * out of sight is out of it. */
 static void set_domain(struct sim *s)
 {
     struct particle_run *run = s->particle;
     const struct domain *d = &s->scene->domain;
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, size = 0, r = 0;
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY},
+           size = 0, r = 0;
     for (int64_t i = 0; i < run->first->n; i++) {
         for (int a = 0; a < 3; a++) {
             low[a] = fmin(low[a], run->first->x[3 * i + a]);
@@ -71,18 +75,22 @@ static void set_step(struct sim *s)
     const struct scene_time *t = &s->scene->time;
     s->dt = s->from ? s->from->dt : t->step > 0 ? t->step : t->safety * particle_limit_dense(s);
     if (!(s->dt > 0) || isinf(s->dt))
-        fail_stop_together(EXIT_SCENE, "%s: time.step: auto finds no limit in this scene; give a value", s->scene->path);
+        fail_stop_together(EXIT_SCENE,
+            "%s: time.step: auto finds no limit in this scene; give a value", s->scene->path);
 }
 
 /* What the run has kept account of it goes on to; what it has not cannot begin now. */
 static void keep_features(struct sim *s)
 {
-    bool orientation = h5_has(s->from->reader, "elements", "orientation"), energy = h5_has(s->from->reader, "pairs", "ledger");
-    const char *missing = s->particle->features.energy && !energy             ? "a measure of energy"
+    bool orientation = h5_has(s->from->reader, "elements", "orientation"),
+         energy = h5_has(s->from->reader, "pairs", "ledger");
+    const char *missing = s->particle->features.energy && !energy ? "a measure of energy"
                           : s->particle->features.orientation && !orientation ? "orientation"
                                                                               : NULL;
     if (missing)
-        fail_stop_together(EXIT_SCENE, "%s cannot begin in a run that goes on: '%s' has nothing of what it was until then", missing, s->from->path);
+        fail_stop_together(EXIT_SCENE,
+            "%s cannot begin in a run that goes on: '%s' has nothing of what it was until then",
+            missing, s->from->path);
     s->particle->features.orientation = orientation;
     s->particle->features.energy = energy;
 }
@@ -101,7 +109,8 @@ void particle_warn(struct sim *s)
 {
     struct particle_run *run = s->particle;
     struct scene_errors warnings = {NULL, 0};
-    limit_warnings(s->scene, run->first, limit_speed(s->scene, run->walls, run->first), s->dt, &warnings);
+    limit_warnings(
+        s->scene, run->first, limit_speed(s->scene, run->walls, run->first), s->dt, &warnings);
     for (int i = 0; i < warnings.n; i++) log_warn(s->log, "%s", warnings.text[i]);
     scene_errors_free(&warnings);
 }

@@ -5,7 +5,8 @@
 
 #include "run/output.h"
 
-/* The dashpots' centring lets larger steps through the larger the step itself: from 0 up to where it agrees with itself, safe all the way. */
+/* The dashpots' centring lets larger steps through the larger the step itself: from 0 up to where
+ * it agrees with itself, safe all the way. */
 static struct limit_result from_below(struct sim *s, double share)
 {
     enum { ROUNDS = 8 };
@@ -43,7 +44,8 @@ void particle_check_limit(struct sim *s)
     s->dt_limit = s->dt_limit > 0 ? fmin(s->dt_limit, limit.dt) : limit.dt;
     if (s->dt <= limit.dt || s->scene->time.allow_unstable) return;
     output_stop_numerics(s,
-        "the time step %.4g s is over its limit %.4g s, set by the contacts of element %lld; take a smaller time.step "
+        "the time step %.4g s is over its limit %.4g s, set by the contacts of element %lld; take "
+        "a smaller time.step "
         "(or softer contacts), or set time.allow_unstable",
         s->dt, limit.dt, (long long)limit.gid);
 }

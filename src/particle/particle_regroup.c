@@ -8,9 +8,10 @@
 #include "comm/fail.h"
 #include "run/output.h"
 
-/* Skin of slow elements, as a share of the mean radius; fast ones get `horizon` of their own motion on top. Wider skins mean more listed pairs,
- * narrower
- * ones more builds. The skin follows the interval between builds, by rules of steps alone, so that it is the same on any number of ranks. */
+/* Skin of slow elements, as a share of the mean radius; fast ones get `horizon` of their own motion
+ * on top. Wider skins mean more listed pairs, narrower ones more builds. The skin follows the
+ * interval between builds, by rules of steps alone, so that it is the same on any number of
+ * ranks. */
 enum { INTERVAL_SHORT = 150, INTERVAL_LONG = 1000 };
 #define SKIN_SMALLEST 0.005
 #define SKIN_LARGEST 0.2
@@ -45,17 +46,20 @@ static void account(struct sim *s)
     if (run->features.energy) energy_moved(s, n);
 }
 
-/* Where the scene has given the domain's extent and does not say that elements may leave it, one that does ends the run. */
+/* Where the scene has given the domain's extent and does not say that elements may leave it, one
+ * that does ends the run. */
 static void check_inside(struct sim *s, const struct cells_bounds *now)
 {
     const struct domain *d = &s->scene->domain;
     int32_t is_outside = 0;
     for (int a = 0; a < 3; a++)
-        is_outside |= !d->periodic[a] && s->particle->particles->n_owned > 0 && (now->low[a] < d->min[a] || now->high[a] > d->max[a]);
+        is_outside |= !d->periodic[a] && s->particle->particles->n_owned > 0 &&
+                      (now->low[a] < d->min[a] || now->high[a] > d->max[a]);
     if (!d->has_box || d->remove_outside) return;
     comm_or_i32(s->comm, &is_outside, 1);
     if (!is_outside) return;
-    struct particles_host *h = particles_download(s->dev, s->particle->particles, &s->particle->features, s->scene, s->particle->first);
+    struct particles_host *h = particles_download(
+        s->dev, s->particle->particles, &s->particle->features, s->scene, s->particle->first);
     int64_t gid = INT64_MAX, own = -1;
     for (int64_t i = 0; i < h->n; i++)
         for (int a = 0; a < 3; a++) {
@@ -116,18 +120,22 @@ void particle_lists(struct sim *s)
     comm_min_f64(s->comm, run->box, 3);
     comm_max_f64(s->comm, run->box + 3, 3);
     ghosts_plan(dev, run->ghosts, run->owners, run->scan, p, &run->bounds);
-    struct cells_bounds all = p->n_ghost > 0 ? cells_bounds(dev, run->cells, p, p->n_owned + p->n_ghost) : run->bounds;
+    struct cells_bounds all =
+        p->n_ghost > 0 ? cells_bounds(dev, run->cells, p, p->n_owned + p->n_ghost) : run->bounds;
     cells_sort(dev, run->cells, run->scan, p, p->n_owned + p->n_ghost, &all);
     pairs_build(dev, run->pairs, run->cells, run->scan, p);
     if (run->assigned) assigned_build(dev, run->assigned, run->scan, p, run->pairs, run->ghosts);
     if (run->wall_contacts)
-        wall_contacts_build(dev, run->wall_contacts, run->scan, p, s->step, (int)ceil(run->horizon / s->dt), run->box, run->box + 3);
+        wall_contacts_build(dev, run->wall_contacts, run->scan, p, s->step,
+            (int)ceil(run->horizon / s->dt), run->box, run->box + 3);
     watch_reset(dev, &s->watch, s->comm, &p->flags);
     run->built_at = s->step;
     const struct pair_list *l = &run->pairs->now;
-    int64_t n_pair = l->n_interior + l->n_mine, n_wall = run->wall_contacts ? run->wall_contacts->now.n : 0;
+    int64_t n_pair = l->n_interior + l->n_mine,
+            n_wall = run->wall_contacts ? run->wall_contacts->now.n : 0;
     const struct halo *halo = run->ghosts->exchange.halo;
-    balance_add(s->balance, (struct partition_part){p->n_owned + n_pair + n_wall, l->n_interior + l->n_boundary - l->n_own, halo ? halo->n_send : 0});
+    balance_add(s->balance, (struct partition_part){p->n_owned + n_pair + n_wall,
+                                l->n_interior + l->n_boundary - l->n_own, halo ? halo->n_send : 0});
 }
 
 /* To owners, new ones if they are dealt out. Returns how many have changed hands. */
@@ -135,7 +143,8 @@ static int64_t move(struct sim *s, struct cells_bounds bounds, bool is_deal)
 {
     struct particle_run *run = s->particle;
     if (is_deal) particle_cut(s);
-    owners_move(s->dev, run->owners, run->cells, run->scan, run->particles, run->pairs, run->wall_contacts, &bounds);
+    owners_move(s->dev, run->owners, run->cells, run->scan, run->particles, run->pairs,
+        run->wall_contacts, &bounds);
     int64_t n = run->owners->n_moved;
     comm_sum_i64(s->comm, &n, 1);
     return n;
@@ -146,11 +155,13 @@ static void rebuild(struct sim *s)
     struct particle_run *run = s->particle;
     particle_build(s);
     pairs_carry(s->dev, run->pairs, run->particles, &run->owners->old_index);
-    if (run->wall_contacts) wall_contacts_carry(s->dev, run->wall_contacts, &run->owners->old_index);
+    if (run->wall_contacts)
+        wall_contacts_carry(s->dev, run->wall_contacts, &run->owners->old_index);
     particle_bind(s);
 }
 
-/* Work is known only from lists, and elements are dealt out by those of before; where the new ones show that it was not enough, by these at once. */
+/* Work is known only from lists, and elements are dealt out by those of before; where the new ones
+ * show that it was not enough, by these at once. */
 static void deal(struct sim *s, const struct cells_bounds *now)
 {
     struct balance *b = s->balance;
@@ -171,7 +182,8 @@ void particle_regroup(struct sim *s)
     struct particle_run *run = s->particle;
     exchange_settle(s->dev, &run->ghosts->exchange);
     balance_look(s->balance, &s->timers, s->step);
-    struct cells_bounds now = cells_bounds(s->dev, run->cells, run->particles, run->particles->n_owned);
+    struct cells_bounds now =
+        cells_bounds(s->dev, run->cells, run->particles, run->particles->n_owned);
     int32_t lost = now.has_nan;
     comm_or_i32(s->comm, &lost, 1);
     if (lost) output_stop_numerics(s, "positions or velocities are not numbers any more");

@@ -10,15 +10,18 @@
 #include "comm/fail.h"
 #include "results/report.h"
 
-/* Digest of the state as it lies on the device, in its own bits. Returns false if there are NaNs. */
+/* Digest of the state as it lies on the device, in its own bits. Returns false if there are
+ * NaNs. */
 bool particle_digest(struct sim *s, uint64_t *digest)
 {
     struct particle_run *run = s->particle;
     const struct particles *p = run->particles;
     const struct features *f = &run->features;
-    size_t n = (size_t)p->n_owned, bytes = p->field[FIELD_STATE].bytes, real = particles_real(f), preal = particles_preal(f);
+    size_t n = (size_t)p->n_owned, bytes = p->field[FIELD_STATE].bytes, real = particles_real(f),
+           preal = particles_preal(f);
     int stride = (int)(bytes / real);
-    char *state = fail_alloc(n * bytes), *q = fail_alloc(n * 4 * real), *none = fail_alloc(n * 4 * real);
+    char *state = fail_alloc(n * bytes), *q = fail_alloc(n * 4 * real),
+         *none = fail_alloc(n * 4 * real);
     int64_t *gid = fail_alloc(n * sizeof *gid);
     buffer_read(s->dev, &p->field[FIELD_STATE].now, 0, n * bytes, state);
     buffer_read(s->dev, &p->field[FIELD_GID].now, 0, n * sizeof *gid, gid);
@@ -28,8 +31,9 @@ bool particle_digest(struct sim *s, uint64_t *digest)
         else ((double *)(void *)q)[4 * i] = 1;
     }
     const char *motion = state + 4 * preal;
-    struct digest_part part[4] = {{state, f->position_is_float, 3, (int)(bytes / preal)}, {motion, f->real_is_float, 3, stride},
-        {q, f->real_is_float, 4, 4}, {f->spin ? motion + 4 * real : none, f->real_is_float, 3, f->spin ? stride : 4}};
+    struct digest_part part[4] = {{state, f->position_is_float, 3, (int)(bytes / preal)},
+        {motion, f->real_is_float, 3, stride}, {q, f->real_is_float, 4, 4},
+        {f->spin ? motion + 4 * real : none, f->real_is_float, 3, f->spin ? stride : 4}};
     int64_t n_nan = digest_of_all(s->comm, gid, p->n_owned, part, 4, digest);
     void *own[] = {state, q, none, gid};
     for (int i = 0; i < 4; i++) free(own[i]);
@@ -49,17 +53,21 @@ int64_t particle_owned(const struct sim *s)
 void particle_count(const struct sim *s, struct step_counts *counts)
 {
     struct particle_run *run = s->particle;
-    const struct exchange *ghosts = &run->ghosts->exchange, *x = run->assigned ? assigned_exchange(run->assigned, ASSIGNED_STATES) : ghosts;
+    const struct exchange *ghosts = &run->ghosts->exchange,
+                          *x = run->assigned ? assigned_exchange(run->assigned, ASSIGNED_STATES)
+                                             : ghosts;
     struct halo_traffic sent = exchange_sent(x), back = {0};
     if (run->assigned) back = exchange_sent(assigned_exchange(run->assigned, ASSIGNED_RESULTS));
     sent.bytes += back.bytes;
     sent.messages += back.messages;
-    *counts = (struct step_counts){run->pairs->now.n_own, sent, ghosts->halo ? ghosts->halo->n_send : 0, x->n_send};
+    *counts = (struct step_counts){
+        run->pairs->now.n_own, sent, ghosts->halo ? ghosts->halo->n_send : 0, x->n_send};
 }
 
 void particle_report_features(const struct sim *s, struct report *r)
 {
-    for (int i = 0; features_name(i); i++) report_integer(r, features_name(i), features_value(&s->particle->features, i));
+    for (int i = 0; features_name(i); i++)
+        report_integer(r, features_name(i), features_value(&s->particle->features, i));
 }
 
 void particle_report_energy(struct sim *s, struct report *r, bool observed)
@@ -88,7 +96,8 @@ void particle_report_energy(struct sim *s, struct report *r, bool observed)
         }
         report_end(r);
     }
-    report_number(r, "balance_error", run->features.energy && observed ? energy_balance(&run->energy_start, &now) : (double)NAN);
+    report_number(r, "balance_error",
+        run->features.energy && observed ? energy_balance(&run->energy_start, &now) : (double)NAN);
     report_end(r);
     report_numbers(r, "momentum", now.momentum, 3);
 }
@@ -96,8 +105,10 @@ void particle_report_energy(struct sim *s, struct report *r, bool observed)
 void particle_report_kernels(const struct sim *s, struct report *r)
 {
     struct particle_run *run = s->particle;
-    struct launch *all[] = {run->pair_force, run->wall_force, run->wall_contacts ? run->wall_contacts->keep_launch : NULL, run->gather,
-        run->kick_drift, run->ghosts->gather, run->pairs->rows, run->pairs->carry, run->wall_contacts ? run->wall_contacts->rows : NULL};
+    struct launch *all[] = {run->pair_force, run->wall_force,
+        run->wall_contacts ? run->wall_contacts->keep_launch : NULL, run->gather, run->kick_drift,
+        run->ghosts->gather, run->pairs->rows, run->pairs->carry,
+        run->wall_contacts ? run->wall_contacts->rows : NULL};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         if (!all[i]) continue;
         report_begin(r, all[i] == run->ghosts->gather ? "pack_ghosts" : all[i]->name);

@@ -1,8 +1,9 @@
 /* Particles from a frame.
  *
- * The lists are built as the run that wrote the frame has built them: around the places that elements had then, with the reach that they had then.
- * So they hold the same contacts, are used up at the same step, and what depends on when they are built (who leaves, periodic places) stays the same.
- * Then everything goes to where it is now. */
+ * The lists are built as the run that wrote the frame has built them: around the places that
+ * elements had then, with the reach that they had then. So they hold the same contacts, are used up
+ * at the same step, and what depends on when they are built (who leaves, periodic places) stays the
+ * same. Then everything goes to where it is now. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,9 +22,10 @@ static struct frame_table read_elements(struct sim *s)
     static const struct {
         const char *name;
         int width;
-    } real[] = {
-        {"position", 3}, {"velocity", 3}, {"angular_velocity", 3}, {"force", 3}, {"reference", 4}, {"reach", 1}, {"orientation", 4}, {"torque", 3}};
-    const bool there[] = {true, true, true, true, true, true, run->features.orientation, run->features.spin};
+    } real[] = {{"position", 3}, {"velocity", 3}, {"angular_velocity", 3}, {"force", 3},
+        {"reference", 4}, {"reach", 1}, {"orientation", 4}, {"torque", 3}};
+    const bool there[] = {
+        true, true, true, true, true, true, run->features.orientation, run->features.spin};
     frame_table_add(&t, s->comm, reader, "id", COLUMN_I64, 1);
     for (size_t k = 0; k < sizeof real / sizeof *real; k++)
         if (there[k]) frame_table_add(&t, s->comm, reader, real[k].name, COLUMN_F64, real[k].width);
@@ -59,7 +61,8 @@ static struct particles_host *host_of(struct sim *s, const struct frame_table *t
     memcpy(h->x, frame_table_get(t, "position"), 3 * n * sizeof *h->x);
     memcpy(h->v, frame_table_get(t, "velocity"), 3 * n * sizeof *h->v);
     memcpy(h->w, frame_table_get(t, "angular_velocity"), 3 * n * sizeof *h->w);
-    if (run->features.orientation) memcpy(h->q, frame_table_get(t, "orientation"), 4 * n * sizeof *h->q);
+    if (run->features.orientation)
+        memcpy(h->q, frame_table_get(t, "orientation"), 4 * n * sizeof *h->q);
     for (int64_t i = 0; i < t->n; i++) particles_host_kind(h, i, s->scene, run->first);
     return h;
 }
@@ -73,7 +76,8 @@ static void write_vectors(struct sim *s, struct buffer *buffer, const double *th
     free(four);
 }
 
-/* Elements at their places of the last build, lists around them, then all as it is at the frame's step. */
+/* Elements at their places of the last build, lists around them, then all as it is at the frame's
+ * step. */
 static void place(struct sim *s, const struct frame_table *t)
 {
     struct particle_run *run = s->particle;
@@ -104,7 +108,8 @@ static void place(struct sim *s, const struct frame_table *t)
 
 static bool is_same_count(const struct measure *a, const struct measure *b)
 {
-    return !strcmp(a->name, b->name) && a->kind == b->kind && !memcmp(a->below, b->below, sizeof a->below) &&
+    return !strcmp(a->name, b->name) && a->kind == b->kind &&
+           !memcmp(a->below, b->below, sizeof a->below) &&
            !memcmp(a->above, b->above, sizeof a->above);
 }
 
@@ -117,7 +122,8 @@ static void restore_left(struct sim *s)
     h5_read_rows(s->from->reader, "measures", "left", COLUMN_I64, 1, 0, n, left);
     for (int i = 0; i < s->scene->n_measure && s->comm->rank == 0; i++)
         for (int k = 0; k < n; k++)
-            if (is_same_count(&s->scene->measure[i], &before->measure[k])) s->particle->left[i] = left[k];
+            if (is_same_count(&s->scene->measure[i], &before->measure[k]))
+                s->particle->left[i] = left[k];
     free(left);
 }
 
@@ -127,14 +133,16 @@ static void restore_energy(struct sim *s)
     int64_t total[ENERGY_TOTALS][SUMS_WIDTH];
     h5_read_rows(s->from->reader, "energy", "sum", COLUMN_I64, SUMS_WIDTH, 0, ENERGY_TOTALS, total);
     energy_restore(s, total);
-    h5_read_rows(s->from->reader, "energy_start", "start", COLUMN_F64, 1, 0, sizeof run->energy_start / sizeof(double), &run->energy_start);
+    h5_read_rows(s->from->reader, "energy_start", "start", COLUMN_F64, 1, 0,
+        sizeof run->energy_start / sizeof(double), &run->energy_start);
 }
 
 /* What drifts have said since the last look, and the look itself where it was under way. */
 static void restore_flags(struct sim *s)
 {
     struct particle_run *run = s->particle;
-    cl_int flag[2] = {(cl_int)h5_read_i64(s->from->reader, "stale"), (cl_int)h5_read_i64(s->from->reader, "lost")};
+    cl_int flag[2] = {(cl_int)h5_read_i64(s->from->reader, "stale"),
+        (cl_int)h5_read_i64(s->from->reader, "lost")};
     buffer_write(s->dev, &run->particles->flags, 0, sizeof flag, flag);
     if (!watch_due(s->step)) return;
     watch_read(s->dev, &s->watch, &run->particles->flags);
@@ -156,7 +164,8 @@ void particle_resume(struct sim *s)
         send(s, &elements);
         place(s, &elements);
     }
-    int32_t *owner = frame_table_owners(s->comm, frame_table_get(&elements, "id"), elements.n, s->n_first);
+    int32_t *owner =
+        frame_table_owners(s->comm, frame_table_get(&elements, "id"), elements.n, s->n_first);
     particle_contacts_restore(s, owner, false);
     if (run->wall_contacts) particle_contacts_restore(s, owner, true);
     free(owner);

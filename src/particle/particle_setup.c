@@ -1,4 +1,5 @@
-/* The particle method's set-up: kernels for this scene's features, elements on their ranks, first lists, forces at step 0. */
+/* The particle method's set-up: kernels for this scene's features, elements on their ranks, first
+ * lists, forces at step 0. */
 #include "particle.h"
 
 #include <math.h>
@@ -11,17 +12,20 @@
 #include "limit.h"
 #include "run/output.h"
 
-/* Room to move between list builds, to begin with: share of the smallest radius, and steps of own motion. */
+/* Room to move between list builds, to begin with: share of the smallest radius, and steps of own
+ * motion. */
 #define SKIN_START 0.01
 enum { HORIZON_STEPS = 60 };
 
-static const char *const source_lists[] = {"scan.cl", "cells.cl", "rows.cl", "pairs.cl", "records.cl", "select.cl", "wall_lists.cl", NULL};
+static const char *const source_lists[] = {
+    "scan.cl", "cells.cl", "rows.cl", "pairs.cl", "records.cl", "select.cl", "wall_lists.cl", NULL};
 static const char *const source_pair[] = {"pair_force.cl", "layout.cl", NULL};
 static const char *const source_wall[] = {"wall_keep.cl", "wall_force.cl", "layout.cl", NULL};
 static const char *const source_body[] = {"gather.cl", NULL};
 static const char *const source_assign[] = {"assign.cl", NULL};
 
-static struct program *build(struct sim *s, const char *name, enum features_program kind, const char *const *sources)
+static struct program *build(
+    struct sim *s, const char *name, enum features_program kind, const char *const *sources)
 {
     char *options = features_options(&s->particle->features, kind);
     struct program *program = program_build(s->dev, s->comm, name, options, sources);
@@ -30,22 +34,27 @@ static struct program *build(struct sim *s, const char *name, enum features_prog
 }
 
 /* Number arguments of a force kernel, or the table of all pairs of materials. */
-static void set_parameters(struct sim *s, struct launch *launch, struct buffer *buffer, bool wall, bool by_table)
+static void set_parameters(
+    struct sim *s, struct launch *launch, struct buffer *buffer, bool wall, bool by_table)
 {
     struct particle_run *run = s->particle;
     int n = s->scene->n_material, n_row = by_table ? n * n : 1;
-    int first_b = wall ? (s->scene->n_wall ? s->scene->wall[0].material : 0) : run->first->material[0];
+    int first_b =
+        wall ? (s->scene->n_wall ? s->scene->wall[0].material : 0) : run->first->material[0];
     int width = run->features.sizes ? CONTACT_TABLE_MATERIAL : CONTACT_TABLE_PARAMETER;
     double *row = fail_alloc((size_t)n_row * (size_t)width * sizeof *row);
-    double r = run->first->radius[0], m = 4.0 / 3.0 * M_PI * r * r * r * s->scene->material[run->first->material[0]].density;
+    double r = run->first->radius[0],
+           m = 4.0 / 3.0 * M_PI * r * r * r * s->scene->material[run->first->material[0]].density;
     for (int k = 0; k < n_row; k++) {
         int a = by_table ? k / n : run->first->material[0], b = by_table ? k % n : first_b;
         if (run->features.sizes) contact_table_material(s->scene, a, b, row + k * width);
         else contact_table_parameters(s->scene, a, b, wall, r, m, s->dt, row + k * width);
     }
     if (launch_has(launch, "table")) {
-        buffer_reserve(s->dev, buffer, (size_t)n_row * (size_t)width * particles_real(&run->features));
-        particles_write(s->dev, buffer, run->features.real_is_float, 0, (size_t)n_row * (size_t)width, row);
+        buffer_reserve(
+            s->dev, buffer, (size_t)n_row * (size_t)width * particles_real(&run->features));
+        particles_write(
+            s->dev, buffer, run->features.real_is_float, 0, (size_t)n_row * (size_t)width, row);
         launch_bind_buffer(launch, "table", buffer);
     } else {
         contact_table_set(launch, row);
@@ -58,7 +67,8 @@ static void set_parameters(struct sim *s, struct launch *launch, struct buffer *
 static void set_motion(struct sim *s, struct launch *launch)
 {
     struct particle_run *run = s->particle;
-    double r = run->first->radius[0], m = 4.0 / 3.0 * M_PI * r * r * r * s->scene->material[run->first->material[0]].density;
+    double r = run->first->radius[0],
+           m = 4.0 / 3.0 * M_PI * r * r * r * s->scene->material[run->first->material[0]].density;
     launch_set_real_if(launch, "radius", r);
     launch_set_real_if(launch, "inverse_m", 1 / m);
     launch_set_real(launch, "gravity_x", s->scene->gravity[0]);
@@ -88,7 +98,8 @@ static void create_kernels(struct sim *s)
     buffer_init(&run->table_pair, "pair table");
     buffer_init(&run->table_wall, "wall table");
     set_parameters(s, run->pair_force, &run->table_pair, false, run->features.materials);
-    if (run->wall_force) set_parameters(s, run->wall_force, &run->table_wall, true, run->features.wall_table);
+    if (run->wall_force)
+        set_parameters(s, run->wall_force, &run->table_wall, true, run->features.wall_table);
     static const char *const axis[] = {"period_x", "period_y", "period_z"};
     for (int a = 0; a < 3; a++) launch_set_real_if(run->pair_force, axis[a], run->period[a]);
     launch_set_real(run->pair_force, "dt", s->dt);
@@ -97,7 +108,8 @@ static void create_kernels(struct sim *s)
     set_motion(s, run->kick_drift);
 }
 
-static void bind_all(struct launch *launch, const char *const *name, const struct buffer *const *buffer)
+static void bind_all(
+    struct launch *launch, const char *const *name, const struct buffer *const *buffer)
 {
     for (int i = 0; name[i]; i++) launch_bind_buffer_if(launch, name[i], buffer[i]);
 }
@@ -107,26 +119,32 @@ void particle_bind(struct sim *s)
     struct particle_run *run = s->particle;
     struct particles *p = run->particles;
     struct pair_list *l = &run->pairs->now;
-    static const char *const pair_name[] = {"position", "motion", "pair_i", "pair_j", "state", "history", "ledger", "result", NULL};
+    static const char *const pair_name[] = {
+        "position", "motion", "pair_i", "pair_j", "state", "history", "ledger", "result", NULL};
     const struct buffer *state = &p->field[FIELD_STATE].now;
     bind_all(run->pair_force, pair_name,
-        (const struct buffer *const[]){state, state, &l->pair_i, &l->pair_j, &l->state, &l->history, &run->pairs->ledger, &run->pairs->result});
+        (const struct buffer *const[]){state, state, &l->pair_i, &l->pair_j, &l->state, &l->history,
+            &run->pairs->ledger, &run->pairs->result});
     launch_set_int(run->pair_force, "capacity", (int)l->capacity);
-    static const char *const body_name[] = {"position", "motion", "incidence_begin", "incidence", "result", "wall_begin", "wall_result",
-        "orientation", "force", "torque", "reference", "flags", NULL};
+    static const char *const body_name[] = {"position", "motion", "incidence_begin", "incidence",
+        "result", "wall_begin", "wall_result", "orientation", "force", "torque", "reference",
+        "flags", NULL};
     struct wall_contacts *w = run->wall_contacts;
-    const struct buffer *body[] = {state, state, &l->incidence_begin, &l->incidence, &run->pairs->result, w ? &w->now.begin : NULL,
-        w ? &w->result : NULL, &p->field[FIELD_ORIENTATION].now, &p->force, &p->torque, &p->reference, &p->flags};
+    const struct buffer *body[] = {state, state, &l->incidence_begin, &l->incidence,
+        &run->pairs->result, w ? &w->now.begin : NULL, w ? &w->result : NULL,
+        &p->field[FIELD_ORIENTATION].now, &p->force, &p->torque, &p->reference, &p->flags};
     bind_all(run->gather, body_name, body);
     bind_all(run->kick_drift, body_name, body);
     launch_set_int(run->gather, "n_owned", (int)p->n_owned);
     launch_set_int(run->kick_drift, "n_owned", (int)p->n_owned);
     if (!w) return;
-    static const char *const wall_name[] = {"position", "motion", "candidate", "candidate_element", "primitive", "wall_of", "pose", "keep", "state",
-        "history", "ledger", "wall_material", "result", NULL};
+    static const char *const wall_name[] = {"position", "motion", "candidate", "candidate_element",
+        "primitive", "wall_of", "pose", "keep", "state", "history", "ledger", "wall_material",
+        "result", NULL};
     bind_all(run->wall_force, wall_name,
-        (const struct buffer *const[]){state, state, &w->now.candidate, &w->now.element, &w->primitive, &w->wall_of, &w->pose, &w->keep,
-            &w->now.state, &w->now.history, &w->ledger, &w->material, &w->result});
+        (const struct buffer *const[]){state, state, &w->now.candidate, &w->now.element,
+            &w->primitive, &w->wall_of, &w->pose, &w->keep, &w->now.state, &w->now.history,
+            &w->ledger, &w->material, &w->result});
     launch_set_int(run->wall_force, "capacity", (int)w->now.capacity);
 }
 
@@ -162,7 +180,8 @@ static double smallest_radius(const struct elements_host *e)
     return r;
 }
 
-/* Forces of step 0: velocities are of the same time as positions, nothing has moved yet. A time step of almost nothing says so to the laws. */
+/* Forces of step 0: velocities are of the same time as positions, nothing has moved yet. A time
+ * step of almost nothing says so to the laws. */
 static void first_forces(struct sim *s)
 {
     struct particle_run *run = s->particle;
@@ -186,7 +205,8 @@ static void start(struct sim *s)
     particle_bind(s);
     run->limit = limit_create(s);
     if (s->comm->n_rank > 1) particle_cut(s); /* now that interactions are known */
-    particle_regroup(s);                      /* its kernels are compiled before the clock runs, and what starts outside leaves at once */
+    /* its kernels are compiled before the clock runs, and what starts outside leaves at once */
+    particle_regroup(s);
     s->n_rebuild = 0;
     balance_restart(s->balance);
     first_forces(s);
@@ -198,34 +218,39 @@ void particle_setup(struct sim *s)
     struct particle_run *run = s->particle;
     s->n_first = run->first->n;
     run->left = fail_alloc((size_t)s->scene->n_measure * sizeof *run->left);
-    log_print(
-        s->log, "%lld element%s, %d wall%s", (long long)s->n_first, s->n_first == 1 ? "" : "s", s->scene->n_wall, s->scene->n_wall == 1 ? "" : "s");
+    log_print(s->log, "%lld element%s, %d wall%s", (long long)s->n_first,
+        s->n_first == 1 ? "" : "s", s->scene->n_wall, s->scene->n_wall == 1 ? "" : "s");
     if (run->features.energy) sim_require_double(s);
     create_kernels(s);
     run->particles = particles_create(s->dev, &run->features, run->program_lists);
     run->scan = scan_create(s->dev, run->program_lists);
     run->cells = cells_create(s->dev, &run->features, run->program_lists, run->period, run->domain);
     run->pairs = pairs_create(s->dev, &run->features, run->program_lists, run->program_pair);
-    run->owners = owners_create(s->dev, s->comm, &run->features, run->program_lists, run->period, run->domain);
+    run->owners = owners_create(
+        s->dev, s->comm, &run->features, run->program_lists, run->period, run->domain);
     run->ghosts = ghosts_create(s->dev, s->comm, &run->features, run->program_lists, run->period);
     if (run->program_assign)
-        run->assigned = assigned_create(s->dev, s->comm, run->program_assign, run->program_lists, particles_real(&run->features));
+        run->assigned = assigned_create(s->dev, s->comm, run->program_assign, run->program_lists,
+            particles_real(&run->features));
     if (run->features.walls)
-        run->wall_contacts =
-            wall_contacts_create(s->dev, s->comm, &run->features, s->scene, run->walls, s->dt, run->program_lists, run->program_wall);
+        run->wall_contacts = wall_contacts_create(s->dev, s->comm, &run->features, s->scene,
+            run->walls, s->dt, run->program_lists, run->program_wall);
     run->energy = energy_create(s);
     run->horizon = HORIZON_STEPS * s->dt;
     if (s->from) particle_resume(s);
     else start(s);
-    if (s->options->profile) balance_record(s->balance, s->options->dir, s->from ? (double)s->step * s->dt : -1);
+    if (s->options->profile)
+        balance_record(s->balance, s->options->dir, s->from ? (double)s->step * s->dt : -1);
 }
 
 void particle_free(struct sim *s)
 {
     struct particle_run *run = s->particle;
     if (!run) return;
-    struct launch *launch[] = {run->select_room, run->pair_force, run->wall_force, run->gather, run->kick_drift};
-    struct program *program[] = {run->program_lists, run->program_pair, run->program_wall, run->program_body, run->program_assign};
+    struct launch *launch[] = {
+        run->select_room, run->pair_force, run->wall_force, run->gather, run->kick_drift};
+    struct program *program[] = {run->program_lists, run->program_pair, run->program_wall,
+        run->program_body, run->program_assign};
     if (run->ghosts) exchange_settle(s->dev, &run->ghosts->exchange);
     limit_free(s->dev, run->limit);
     energy_free(s->dev, run->energy);

@@ -1,10 +1,11 @@
-/* One step of the particle method. The host only enqueues, except in ghosts_swap, where it moves messages while the device works, and in watch_vote,
- * where
- * it waits for a flag of the step before.
+/* One step of the particle method. The host only enqueues, except in ghosts_swap, where it moves
+ * messages while the device works, and in watch_vote, where it waits for a flag of the step before.
  *
- *   forces at t^n    interior pairs and walls beside the exchange, then pairs with ghosts; where those are assigned to one side (assigned.h) some
+ *   forces at t^n    interior pairs and walls beside the exchange, then pairs with ghosts; where
+ *     those are assigned to one side (assigned.h) some
  *                    interior pairs are left for the time in which their results travel
- *   gather           sum in fixed order, kick; unless the step is observed also the next kick and drift, to t^{n+1} */
+ *   gather           sum in fixed order, kick; unless the step is observed also the next kick and
+ *     drift, to t^{n+1} */
 #include "particle.h"
 
 #include "kernels/common/batch.h"
@@ -12,7 +13,8 @@
 #include "base/signals.h"
 #include "device/trace.h"
 
-static void launch_pairs(struct sim *s, int64_t first, int64_t n, const cl_event *wait, cl_event *done)
+static void launch_pairs(
+    struct sim *s, int64_t first, int64_t n, const cl_event *wait, cl_event *done)
 {
     struct particle_run *run = s->particle;
     if (n > 0) {
@@ -22,8 +24,8 @@ static void launch_pairs(struct sim *s, int64_t first, int64_t n, const cl_event
     if (n > 0 || done) launch_run(run->pair_force, s->dev->compute, n, wait ? 1 : 0, wait, done);
 }
 
-/* Interior pairs first <= p < end. With messages to come, `most` is the event of their larger part: when it is over the host has time to pass on what
- * came, while the device does the rest. */
+/* Interior pairs first <= p < end. With messages to come, `most` is the event of their larger part:
+ * when it is over the host has time to pass on what came, while the device does the rest. */
 static void launch_interior(struct sim *s, int64_t first, int64_t end, cl_event *most)
 {
     int64_t middle = s->comm->n_rank > 1 ? first + (end - first) * 3 / 4 / BATCH * BATCH : end;
@@ -33,7 +35,8 @@ static void launch_interior(struct sim *s, int64_t first, int64_t end, cl_event 
     trace_part(s->dev->trace, NULL);
 }
 
-/* Results of boundary pairs to and from the ranks that do not compute them, under the interior pairs from `first` on. */
+/* Results of boundary pairs to and from the ranks that do not compute them, under the interior
+ * pairs from `first` on. */
 static void send_back(struct sim *s, int64_t first)
 {
     struct particle_run *run = s->particle;
@@ -102,7 +105,8 @@ static void resume(struct sim *s)
 static bool stale(struct sim *s)
 {
     struct particle_run *run = s->particle;
-    return run->wall_contacts && wall_contacts_stale(run->wall_contacts, s->step, run->box, run->box + 3);
+    return run->wall_contacts &&
+           wall_contacts_stale(run->wall_contacts, s->step, run->box, run->box + 3);
 }
 
 const struct step_ops particle_ops = {

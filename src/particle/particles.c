@@ -11,9 +11,11 @@ static size_t state_bytes(const struct features *f)
     return 4 * particles_preal(f) + (f->spin ? 8 : 4) * particles_real(f);
 }
 
-struct particles *particles_create(struct device *dev, const struct features *features, const struct program *lists)
+struct particles *particles_create(
+    struct device *dev, const struct features *features, const struct program *lists)
 {
-    static const char *const name[FIELD_N][2] = {{"state", "state, spare"}, {"gid", "gid, spare"}, {"orientation", "orientation, spare"}};
+    static const char *const name[FIELD_N][2] = {
+        {"state", "state, spare"}, {"gid", "gid, spare"}, {"orientation", "orientation, spare"}};
     struct particles *p = fail_alloc(sizeof *p);
     p->field[FIELD_STATE].bytes = state_bytes(features);
     p->field[FIELD_GID].bytes = sizeof(int64_t);
@@ -50,8 +52,10 @@ void particles_free(struct device *dev, struct particles *p)
     free(p);
 }
 
-/* Grows a buffer and keeps its first bytes: the rare case of ghosts that do not fit behind the owned elements. */
-static void reserve_keep(struct device *dev, struct particles *p, struct buffer *buffer, size_t keep, size_t bytes)
+/* Grows a buffer and keeps its first bytes: the rare case of ghosts that do not fit behind the
+ * owned elements. */
+static void reserve_keep(
+    struct device *dev, struct particles *p, struct buffer *buffer, size_t keep, size_t bytes)
 {
     if (bytes <= buffer->capacity) {
         buffer_reserve(dev, buffer, bytes);
@@ -73,20 +77,26 @@ static void reserve_keep(struct device *dev, struct particles *p, struct buffer 
     *buffer = larger;
 }
 
-void particles_reserve(struct device *dev, struct particles *p, const struct features *features, int64_t n, int64_t keep)
+void particles_reserve(struct device *dev, struct particles *p, const struct features *features,
+    int64_t n, int64_t keep)
 {
-    for (int i = 0; i < FIELD_N; i++) reserve_keep(dev, p, &p->field[i].now, p->field[i].bytes * (size_t)keep, p->field[i].bytes * (size_t)n);
-    reserve_keep(dev, p, &p->reach, particles_preal(features) * (size_t)keep, particles_preal(features) * (size_t)n);
+    for (int i = 0; i < FIELD_N; i++)
+        reserve_keep(dev, p, &p->field[i].now, p->field[i].bytes * (size_t)keep,
+            p->field[i].bytes * (size_t)n);
+    reserve_keep(dev, p, &p->reach, particles_preal(features) * (size_t)keep,
+        particles_preal(features) * (size_t)n);
     buffer_reserve(dev, &p->force, 4 * particles_real(features) * (size_t)n);
     buffer_reserve(dev, &p->torque, features->spin ? 4 * particles_real(features) * (size_t)n : 0);
 }
 
 void particles_reserve_spare(struct device *dev, struct particles *p, int64_t n)
 {
-    for (int i = 0; i < FIELD_N; i++) buffer_reserve(dev, &p->field[i].spare, p->field[i].bytes * (size_t)n);
+    for (int i = 0; i < FIELD_N; i++)
+        buffer_reserve(dev, &p->field[i].spare, p->field[i].bytes * (size_t)n);
 }
 
-void particles_permute(struct device *dev, struct particles *p, const struct buffer *index, int64_t n)
+void particles_permute(
+    struct device *dev, struct particles *p, const struct buffer *index, int64_t n)
 {
     for (int i = 0; i < FIELD_N; i++) {
         if (p->field[i].bytes == 0) continue;
@@ -114,10 +124,12 @@ static double mass_of(const struct scene *scene, int material, double radius)
 }
 
 /* One element's record, as kernels/particle/element.h reads it. */
-static void write_record(char *record, const struct features *f, const struct particles_host *h, int64_t i)
+static void write_record(
+    char *record, const struct features *f, const struct particles_host *h, int64_t i)
 {
     const double *x = h->x + 3 * i, *v = h->v + 3 * i, *w = h->w + 3 * i;
-    double head[4] = {x[0], x[1], x[2], h->radius[i]}, tail[8] = {v[0], v[1], v[2], 1 / h->mass[i], w[0], w[1], w[2], h->material[i]};
+    double head[4] = {x[0], x[1], x[2], h->radius[i]},
+           tail[8] = {v[0], v[1], v[2], 1 / h->mass[i], w[0], w[1], w[2], h->material[i]};
     for (int k = 0; k < 4; k++) {
         if (f->position_is_float) ((float *)record)[k] = (float)head[k];
         else ((double *)record)[k] = head[k];
@@ -129,7 +141,8 @@ static void write_record(char *record, const struct features *f, const struct pa
     }
 }
 
-void particles_write_state(struct device *dev, struct particles *p, const struct features *f, const struct particles_host *h)
+void particles_write_state(struct device *dev, struct particles *p, const struct features *f,
+    const struct particles_host *h)
 {
     size_t bytes = state_bytes(f);
     char *state = fail_alloc((size_t)h->n * bytes);
@@ -138,14 +151,17 @@ void particles_write_state(struct device *dev, struct particles *p, const struct
     free(state);
 }
 
-void particles_place(struct device *dev, struct particles *p, const struct features *f, const struct particles_host *h)
+void particles_place(struct device *dev, struct particles *p, const struct features *f,
+    const struct particles_host *h)
 {
     p->n_owned = h->n;
     p->n_ghost = 0;
     particles_reserve(dev, p, f, h->n, 0);
     particles_write_state(dev, p, f, h);
     buffer_write(dev, &p->field[FIELD_GID].now, 0, (size_t)h->n * sizeof *h->gid, h->gid);
-    if (f->orientation) particles_write(dev, &p->field[FIELD_ORIENTATION].now, f->real_is_float, 0, 4 * (size_t)h->n, h->q);
+    if (f->orientation)
+        particles_write(
+            dev, &p->field[FIELD_ORIENTATION].now, f->real_is_float, 0, 4 * (size_t)h->n, h->q);
 }
 
 struct particles_host *particles_host_create(int64_t n_row)
@@ -165,7 +181,8 @@ struct particles_host *particles_host_create(int64_t n_row)
     return h;
 }
 
-void particles_host_kind(struct particles_host *h, int64_t i, const struct scene *scene, const struct elements_host *first)
+void particles_host_kind(struct particles_host *h, int64_t i, const struct scene *scene,
+    const struct elements_host *first)
 {
     int64_t gid = h->gid[i];
     h->radius[i] = first->radius[gid];
@@ -173,8 +190,8 @@ void particles_host_kind(struct particles_host *h, int64_t i, const struct scene
     h->mass[i] = mass_of(scene, h->material[i], first->radius[gid]);
 }
 
-void particles_upload(struct device *dev, struct particles *p, const struct features *features, const struct elements_host *elements,
-    const struct scene *scene, const unsigned char *take)
+void particles_upload(struct device *dev, struct particles *p, const struct features *features,
+    const struct elements_host *elements, const struct scene *scene, const unsigned char *take)
 {
     int64_t n = 0, k = 0;
     for (int64_t i = 0; i < elements->n; i++) n += take[i];
@@ -192,7 +209,8 @@ void particles_upload(struct device *dev, struct particles *p, const struct feat
     particles_host_free(h);
 }
 
-double *particles_read(struct device *dev, const struct buffer *buffer, bool is_float, size_t first, size_t n)
+double *particles_read(
+    struct device *dev, const struct buffer *buffer, bool is_float, size_t first, size_t n)
 {
     double *value = fail_alloc(n * sizeof *value);
     if (is_float) {
@@ -206,7 +224,8 @@ double *particles_read(struct device *dev, const struct buffer *buffer, bool is_
     return value;
 }
 
-void particles_write(struct device *dev, struct buffer *buffer, bool is_float, size_t first, size_t n, const double *value)
+void particles_write(struct device *dev, struct buffer *buffer, bool is_float, size_t first,
+    size_t n, const double *value)
 {
     if (is_float) {
         float *raw = fail_alloc(n * sizeof *raw);
@@ -223,8 +242,8 @@ static double number(const char *record, bool is_float, int k)
     return is_float ? (double)((const float *)record)[k] : ((const double *)record)[k];
 }
 
-struct particles_host *particles_download(
-    struct device *dev, const struct particles *p, const struct features *f, const struct scene *scene, const struct elements_host *first)
+struct particles_host *particles_download(struct device *dev, const struct particles *p,
+    const struct features *f, const struct scene *scene, const struct elements_host *first)
 {
     size_t n = (size_t)p->n_owned, bytes = state_bytes(f);
     struct particles_host *h = particles_host_create(p->n_owned);

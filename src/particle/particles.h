@@ -1,8 +1,8 @@
 /* The elements of this rank on its device: owned first, ghosts after.
  *
- * One table of fields (particles_field) says what an element carries with it when it is reordered, migrates or is written; what is rebuilt with the
- * lists
- * (reference, reach) or holds for one step (force, torque) is not in it. Knows no lists, no walls, no messages. */
+ * One table of fields (particles_field) says what an element carries with it when it is reordered,
+ * migrates or is written; what is rebuilt with the lists (reference, reach) or holds for one step
+ * (force, torque) is not in it. Knows no lists, no walls, no messages. */
 #ifndef DEMOCLES_PARTICLES_H
 #define DEMOCLES_PARTICLES_H
 
@@ -11,7 +11,8 @@
 
 enum { FIELD_STATE, FIELD_GID, FIELD_ORIENTATION, FIELD_N };
 
-/* One carried field: `bytes` per element (0: the scene does not have it), in two buffers that change places when elements are reordered. */
+/* One carried field: `bytes` per element (0: the scene does not have it), in two buffers that
+ * change places when elements are reordered. */
 struct field {
     const char *name;
     size_t bytes;
@@ -21,7 +22,8 @@ struct field {
 struct particles {
     int64_t n_owned, n_ghost, n_global;
     struct field field[FIELD_N];
-    struct buffer reference;      /* preal [n_owned][4]: place when the lists were built, room to move [m] */
+    /* preal [n_owned][4]: place when the lists were built, room to move [m] */
+    struct buffer reference;
     struct buffer reach;          /* preal [n_owned + n_ghost]: listing reach [m] */
     struct buffer force, torque;  /* real [n_owned][4] of the last observed step [N], [N m] */
     struct buffer flags;          /* int [2]: lists stale, elements lost */
@@ -38,18 +40,23 @@ static inline size_t particles_preal(const struct features *f)
 }
 
 /* `lists`: program with records.cl. */
-struct particles *particles_create(struct device *dev, const struct features *features, const struct program *lists);
+struct particles *particles_create(
+    struct device *dev, const struct features *features, const struct program *lists);
 void particles_free(struct device *dev, struct particles *p);
 
 /* Room for n elements in all; what the fields hold for the first `keep` elements stays. */
-void particles_reserve(struct device *dev, struct particles *p, const struct features *features, int64_t n, int64_t keep);
+void particles_reserve(struct device *dev, struct particles *p, const struct features *features,
+    int64_t n, int64_t keep);
 /* The spare buffers, contents lost. */
 void particles_reserve_spare(struct device *dev, struct particles *p, int64_t n);
-/* spare[i] = now[index[i]] for i < n, all fields; then particles_swap makes the spare ones current. */
-void particles_permute(struct device *dev, struct particles *p, const struct buffer *index, int64_t n);
+/* spare[i] = now[index[i]] for i < n, all fields; then particles_swap makes the spare ones
+ * current. */
+void particles_permute(
+    struct device *dev, struct particles *p, const struct buffer *index, int64_t n);
 void particles_swap(struct particles *p);
 
-/* Owned elements on the host, as plain doubles (float bits widen exactly), for frames, digests and tests. */
+/* Owned elements on the host, as plain doubles (float bits widen exactly), for frames, digests and
+ * tests. */
 struct particles_host {
     int64_t n;
     int64_t *gid;
@@ -57,24 +64,29 @@ struct particles_host {
     double *radius, *mass;
     int32_t *material;
 };
-struct particles_host *particles_download(
-    struct device *dev, const struct particles *p, const struct features *features, const struct scene *scene, const struct elements_host *first);
+struct particles_host *particles_download(struct device *dev, const struct particles *p,
+    const struct features *features, const struct scene *scene, const struct elements_host *first);
 /* n elements, all numbers zero but the quaternions' w. */
 struct particles_host *particles_host_create(int64_t n);
 /* Radius, material and mass of row i, by its gid. */
-void particles_host_kind(struct particles_host *host, int64_t i, const struct scene *scene, const struct elements_host *first);
+void particles_host_kind(struct particles_host *host, int64_t i, const struct scene *scene,
+    const struct elements_host *first);
 void particles_host_free(struct particles_host *host);
 
 /* Takes over the elements of which take[i] is set. mass: [kg] by element. */
-void particles_upload(struct device *dev, struct particles *p, const struct features *features, const struct elements_host *elements,
-    const struct scene *scene, const unsigned char *take);
+void particles_upload(struct device *dev, struct particles *p, const struct features *features,
+    const struct elements_host *elements, const struct scene *scene, const unsigned char *take);
 /* The same of rows that are here already; without p->n_global. */
-void particles_place(struct device *dev, struct particles *p, const struct features *features, const struct particles_host *host);
+void particles_place(struct device *dev, struct particles *p, const struct features *features,
+    const struct particles_host *host);
 /* Writes places and motions of the owned elements anew, in their order. */
-void particles_write_state(struct device *dev, struct particles *p, const struct features *features, const struct particles_host *host);
+void particles_write_state(struct device *dev, struct particles *p, const struct features *features,
+    const struct particles_host *host);
 
 /* real or preal array on the device to doubles on the host, and back; n numbers, blocking. */
-double *particles_read(struct device *dev, const struct buffer *buffer, bool is_float, size_t first, size_t n);
-void particles_write(struct device *dev, struct buffer *buffer, bool is_float, size_t first, size_t n, const double *value);
+double *particles_read(
+    struct device *dev, const struct buffer *buffer, bool is_float, size_t first, size_t n);
+void particles_write(struct device *dev, struct buffer *buffer, bool is_float, size_t first,
+    size_t n, const double *value);
 
 #endif

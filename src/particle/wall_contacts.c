@@ -10,22 +10,25 @@ enum { POSE_WIDTH = 22, LIST_BUFFERS = 5, OWN_BUFFERS = 11 };
 
 static void list_buffers(struct wall_list *l, struct buffer *all[LIST_BUFFERS])
 {
-    struct buffer *b[LIST_BUFFERS] = {&l->begin, &l->candidate, &l->element, &l->state, &l->history};
+    struct buffer *b[LIST_BUFFERS] = {
+        &l->begin, &l->candidate, &l->element, &l->state, &l->history};
     memcpy(all, b, sizeof b);
 }
 
 static void own_buffers(struct wall_contacts *w, struct buffer *all[OWN_BUFFERS])
 {
-    struct buffer *b[OWN_BUFFERS] = {
-        &w->primitive, &w->bounds, &w->features_of, &w->wall_of, &w->material, &w->room, &w->pose, &w->keep, &w->result, &w->ledger, &w->batch};
+    struct buffer *b[OWN_BUFFERS] = {&w->primitive, &w->bounds, &w->features_of, &w->wall_of,
+        &w->material, &w->room, &w->pose, &w->keep, &w->result, &w->ledger, &w->batch};
     memcpy(all, b, sizeof b);
 }
 
 static void init_buffers(struct device *dev, struct wall_contacts *w)
 {
-    static const char *const name[OWN_BUFFERS] = {"wall primitives", "wall bounds", "wall features", "wall of primitive", "wall material",
-        "wall room", "wall poses", "wall keep", "wall results", "wall ledger", "wall pose batch"};
-    static const char *const list_name[LIST_BUFFERS] = {"wall begin", "wall candidates", "wall candidate elements", "wall state", "wall history"};
+    static const char *const name[OWN_BUFFERS] = {"wall primitives", "wall bounds", "wall features",
+        "wall of primitive", "wall material", "wall room", "wall poses", "wall keep",
+        "wall results", "wall ledger", "wall pose batch"};
+    static const char *const list_name[LIST_BUFFERS] = {
+        "wall begin", "wall candidates", "wall candidate elements", "wall state", "wall history"};
     struct buffer *own[OWN_BUFFERS], *list[LIST_BUFFERS];
     struct wall_list *lists[] = {&w->now, &w->old};
     own_buffers(w, own);
@@ -47,7 +50,8 @@ static void upload_walls(struct device *dev, struct wall_contacts *w, const stru
 {
     const struct walls *walls = w->walls;
     bool is_float = w->features->position_is_float;
-    size_t n = (size_t)walls->n_primitive, preal = particles_preal(w->features), n_wall = (size_t)walls->n_wall;
+    size_t n = (size_t)walls->n_primitive, preal = particles_preal(w->features),
+           n_wall = (size_t)walls->n_wall;
     double *bounds = fail_alloc(6 * n * sizeof *bounds);
     cl_int *material = fail_alloc(n_wall * sizeof *material);
     for (size_t i = 0; i < n; i++)
@@ -73,8 +77,9 @@ static void upload_walls(struct device *dev, struct wall_contacts *w, const stru
     free(material);
 }
 
-struct wall_contacts *wall_contacts_create(struct device *dev, const struct comm *comm, const struct features *features, const struct scene *scene,
-    const struct walls *walls, double dt, const struct program *lists, const struct program *force)
+struct wall_contacts *wall_contacts_create(struct device *dev, const struct comm *comm,
+    const struct features *features, const struct scene *scene, const struct walls *walls,
+    double dt, const struct program *lists, const struct program *force)
 {
     struct wall_contacts *w = fail_alloc(sizeof *w);
     w->features = features;
@@ -150,7 +155,8 @@ void wall_contacts_set_step(struct device *dev, struct wall_contacts *w, int64_t
 {
     bool first = w->batch_first < 0, varies = w->features->moving || w->features->timed;
     if (!first && !varies) return;
-    if (first || step >= w->batch_first + WALL_BATCH) new_batch(dev, w, step, first || w->features->moving);
+    if (first || step >= w->batch_first + WALL_BATCH)
+        new_batch(dev, w, step, first || w->features->moving);
     if (!first && !w->features->moving) return;
     launch_set_int(w->copy, "first", (int)(step - w->batch_first) * w->walls->n_wall * POSE_WIDTH);
     launch_run(w->copy, dev->compute, (int64_t)w->walls->n_wall * POSE_WIDTH, 0, NULL, NULL);
@@ -162,23 +168,30 @@ const struct wall_pose *wall_contacts_pose(const struct wall_contacts *w, int64_
     return w->poses + (k < 0 ? 0 : k >= WALL_BATCH ? WALL_BATCH - 1 : k) * w->walls->n_wall;
 }
 
-/* Walls in motion get room for horizon_steps at their present speed; what is not there yet is listed when it appears; what is gone is left out. */
-static void set_room(struct device *dev, struct wall_contacts *w, int64_t step, int horizon_steps, const double low[3], const double high[3])
+/* Walls in motion get room for horizon_steps at their present speed; what is not there yet is
+ * listed when it appears; what is gone is left out. */
+static void set_room(struct device *dev, struct wall_contacts *w, int64_t step, int horizon_steps,
+    const double low[3], const double high[3])
 {
     const struct wall_pose *now = wall_contacts_pose(w, step);
     int64_t later = step - w->batch_first + 1;
-    const struct wall_pose *next = w->poses + (later < WALL_BATCH ? later : WALL_BATCH - 1) * w->walls->n_wall;
+    const struct wall_pose *next =
+        w->poses + (later < WALL_BATCH ? later : WALL_BATCH - 1) * w->walls->n_wall;
     memcpy(w->built, now, (size_t)w->walls->n_wall * sizeof *now);
     for (int k = 0; k < w->walls->n_wall; k++) {
         w->room_host[k] = now[k].active ? 0 : -1;
         if (now[k].active && w->walls->moves[k]) {
-            double per_step = later < WALL_BATCH ? walls_displacement(w->walls, k, &now[k], &next[k], low, high) : 0;
-            double speed = walls_displacement(w->walls, k, &now[k], &w->poses[(WALL_BATCH - 1) * (size_t)w->walls->n_wall + (size_t)k], low, high);
+            double per_step = later < WALL_BATCH
+                                  ? walls_displacement(w->walls, k, &now[k], &next[k], low, high)
+                                  : 0;
+            double speed = walls_displacement(w->walls, k, &now[k],
+                &w->poses[(WALL_BATCH - 1) * (size_t)w->walls->n_wall + (size_t)k], low, high);
             double left = (double)(WALL_BATCH - (step - w->batch_first));
             w->room_host[k] = horizon_steps * fmax(per_step, speed / fmax(left, 1));
         }
     }
-    particles_write(dev, &w->room, w->features->position_is_float, 0, (size_t)w->walls->n_wall, w->room_host);
+    particles_write(
+        dev, &w->room, w->features->position_is_float, 0, (size_t)w->walls->n_wall, w->room_host);
 }
 
 static void reserve_contacts(struct device *dev, struct wall_contacts *w)
@@ -201,8 +214,9 @@ static void reserve_contacts(struct device *dev, struct wall_contacts *w)
     }
 }
 
-void wall_contacts_build(struct device *dev, struct wall_contacts *w, struct scan *scan, const struct particles *p, int64_t step, int horizon_steps,
-    const double low[3], const double high[3])
+void wall_contacts_build(struct device *dev, struct wall_contacts *w, struct scan *scan,
+    const struct particles *p, int64_t step, int horizon_steps, const double low[3],
+    const double high[3])
 {
     struct wall_list older = w->old, *l = &w->now;
     w->old = w->now;
@@ -215,10 +229,12 @@ void wall_contacts_build(struct device *dev, struct wall_contacts *w, struct sca
     const struct {
         const char *name;
         const struct buffer *buffer;
-    } bind[] = {{"position", &p->field[FIELD_STATE].now}, {"reach", &p->reach}, {"primitive", &w->primitive}, {"bounds", &w->bounds},
-        {"wall_of", &w->wall_of}, {"pose", &w->pose}, {"room", &w->room}, {"begin", &l->begin}, {"candidate", &l->candidate},
+    } bind[] = {{"position", &p->field[FIELD_STATE].now}, {"reach", &p->reach},
+        {"primitive", &w->primitive}, {"bounds", &w->bounds}, {"wall_of", &w->wall_of},
+        {"pose", &w->pose}, {"room", &w->room}, {"begin", &l->begin}, {"candidate", &l->candidate},
         {"candidate_element", &l->element}};
-    for (size_t i = 0; i < sizeof bind / sizeof *bind; i++) launch_bind_buffer(w->rows, bind[i].name, bind[i].buffer);
+    for (size_t i = 0; i < sizeof bind / sizeof *bind; i++)
+        launch_bind_buffer(w->rows, bind[i].name, bind[i].buffer);
     launch_set_int(w->rows, "fill", 0);
     launch_run(w->rows, dev->compute, l->n_owned, 0, NULL, NULL);
     l->n = scan_total(dev, scan, &l->begin, l->n_owned);
@@ -228,7 +244,8 @@ void wall_contacts_build(struct device *dev, struct wall_contacts *w, struct sca
     launch_run(w->rows, dev->compute, l->n_owned, 0, NULL, NULL);
 }
 
-void wall_contacts_carry(struct device *dev, struct wall_contacts *w, const struct buffer *old_index)
+void wall_contacts_carry(
+    struct device *dev, struct wall_contacts *w, const struct buffer *old_index)
 {
     struct wall_list *l = &w->now, *o = &w->old;
     struct launch *k = w->carry;
@@ -242,21 +259,27 @@ void wall_contacts_carry(struct device *dev, struct wall_contacts *w, const stru
     const struct {
         const char *name;
         const struct buffer *buffer;
-    } bind[] = {{"begin", &l->begin}, {"candidate", &l->candidate}, {"old_index", old_index}, {"old_begin", &o->begin},
-        {"old_candidate", &o->candidate}, {"arrival_begin", &w->arrivals.begin}, {"arrival_candidate", &w->arrivals.key},
-        {"arrival_state", &w->arrivals.state}, {"arrival_history", &w->arrivals.history}, {"old_state", &o->state}, {"old_history", &o->history},
-        {"state", &l->state}, {"history", &l->history}};
-    for (size_t i = 0; i < sizeof bind / sizeof *bind; i++) launch_bind_buffer(k, bind[i].name, bind[i].buffer);
+    } bind[] = {{"begin", &l->begin}, {"candidate", &l->candidate}, {"old_index", old_index},
+        {"old_begin", &o->begin}, {"old_candidate", &o->candidate},
+        {"arrival_begin", &w->arrivals.begin}, {"arrival_candidate", &w->arrivals.key},
+        {"arrival_state", &w->arrivals.state}, {"arrival_history", &w->arrivals.history},
+        {"old_state", &o->state}, {"old_history", &o->history}, {"state", &l->state},
+        {"history", &l->history}};
+    for (size_t i = 0; i < sizeof bind / sizeof *bind; i++)
+        launch_bind_buffer(k, bind[i].name, bind[i].buffer);
     launch_run(k, dev->compute, l->n_owned, 0, NULL, NULL);
 }
 
-bool wall_contacts_stale(const struct wall_contacts *w, int64_t step, const double low[3], const double high[3])
+bool wall_contacts_stale(
+    const struct wall_contacts *w, int64_t step, const double low[3], const double high[3])
 {
     if (!w->features->moving && !w->features->timed) return false;
     const struct wall_pose *now = wall_contacts_pose(w, step);
     for (int k = 0; k < w->walls->n_wall; k++) {
         if (now[k].active != (w->room_host[k] >= 0)) return true;
-        if (now[k].active && w->walls->moves[k] && walls_displacement(w->walls, k, &w->built[k], &now[k], low, high) > w->room_host[k]) return true;
+        if (now[k].active && w->walls->moves[k] &&
+            walls_displacement(w->walls, k, &w->built[k], &now[k], low, high) > w->room_host[k])
+            return true;
     }
     return false;
 }
@@ -269,9 +292,11 @@ void wall_contacts_select(struct device *dev, struct wall_contacts *w, const str
     const struct {
         const char *name;
         const struct buffer *buffer;
-    } bind[] = {{"position", &p->field[FIELD_STATE].now}, {"begin", &l->begin}, {"candidate", &l->candidate}, {"primitive", &w->primitive},
-        {"features", &w->features_of}, {"wall_of", &w->wall_of}, {"pose", &w->pose}, {"keep", &w->keep}};
-    for (size_t i = 0; i < sizeof bind / sizeof *bind; i++) launch_bind_buffer(k, bind[i].name, bind[i].buffer);
+    } bind[] = {{"position", &p->field[FIELD_STATE].now}, {"begin", &l->begin},
+        {"candidate", &l->candidate}, {"primitive", &w->primitive}, {"features", &w->features_of},
+        {"wall_of", &w->wall_of}, {"pose", &w->pose}, {"keep", &w->keep}};
+    for (size_t i = 0; i < sizeof bind / sizeof *bind; i++)
+        launch_bind_buffer(k, bind[i].name, bind[i].buffer);
     launch_bind_buffer_if(k, "state", &l->state);
     launch_bind_buffer_if(k, "history", &l->history);
     launch_set_int_if(k, "capacity", (int)l->capacity);

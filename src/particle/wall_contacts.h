@@ -1,8 +1,9 @@
-/* Elements at walls: the walls on the device, their poses ahead of time, candidates of each element, and what those contacts remember.
+/* Elements at walls: the walls on the device, their poses ahead of time, candidates of each
+ * element, and what those contacts remember.
  *
- * Poses of moving walls are computed by rank 0 for a batch of steps and broadcast as bits; the device holds the row of one step at a time, copied
- * from
- * a batch that was uploaded as a whole. Knows no law and no pair. */
+ * Poses of moving walls are computed by rank 0 for a batch of steps and broadcast as bits; the
+ * device holds the row of one step at a time, copied from a batch that was uploaded as a whole.
+ * Knows no law and no pair. */
 #ifndef DEMOCLES_WALL_CONTACTS_H
 #define DEMOCLES_WALL_CONTACTS_H
 
@@ -24,7 +25,8 @@ struct wall_contacts {
     struct contact_layout layout;
     struct wall_list now, old;
     struct contact_arrivals arrivals;
-    struct buffer primitive, bounds, features_of, wall_of, material, room, pose, keep, result, ledger;
+    struct buffer primitive, bounds, features_of, wall_of, material, room, pose, keep, result,
+        ledger;
     struct buffer batch;     /* preal [WALL_BATCH][n_wall][POSE_WIDTH] */
     struct wall_pose *poses; /* [WALL_BATCH][n_wall] on the host */
     int64_t batch_first;     /* step of the first pose */
@@ -33,21 +35,28 @@ struct wall_contacts {
     struct launch *rows, *carry, *leave, *keep_launch, *copy;
 };
 
-struct wall_contacts *wall_contacts_create(struct device *dev, const struct comm *comm, const struct features *features, const struct scene *scene,
-    const struct walls *walls, double dt, const struct program *lists, const struct program *force);
+struct wall_contacts *wall_contacts_create(struct device *dev, const struct comm *comm,
+    const struct features *features, const struct scene *scene, const struct walls *walls,
+    double dt, const struct program *lists, const struct program *force);
 void wall_contacts_free(struct device *dev, struct wall_contacts *w);
 
-/* Brings the poses of `step` to the device; from step to step in ascending order. Collective when a new batch begins. */
+/* Brings the poses of `step` to the device; from step to step in ascending order. Collective when a
+ * new batch begins. */
 void wall_contacts_set_step(struct device *dev, struct wall_contacts *w, int64_t step);
 const struct wall_pose *wall_contacts_pose(const struct wall_contacts *w, int64_t step);
 
-/* Candidates for `step`, valid until an element or a wall has used up its room; `horizon_steps`: for how long walls in motion get room. */
-void wall_contacts_build(struct device *dev, struct wall_contacts *w, struct scan *scan, const struct particles *p, int64_t step, int horizon_steps,
-    const double low[3], const double high[3]);
-void wall_contacts_carry(struct device *dev, struct wall_contacts *w, const struct buffer *old_index);
+/* Candidates for `step`, valid until an element or a wall has used up its room; `horizon_steps`:
+ * for how long walls in motion get room. */
+void wall_contacts_build(struct device *dev, struct wall_contacts *w, struct scan *scan,
+    const struct particles *p, int64_t step, int horizon_steps, const double low[3],
+    const double high[3]);
+void wall_contacts_carry(
+    struct device *dev, struct wall_contacts *w, const struct buffer *old_index);
 
-/* Whether some wall has used up its room by `step`, or appears or goes then. The same on all ranks. Within the batch of the last set_step. */
-bool wall_contacts_stale(const struct wall_contacts *w, int64_t step, const double low[3], const double high[3]);
+/* Whether some wall has used up its room by `step`, or appears or goes then. The same on all ranks.
+ * Within the batch of the last set_step. */
+bool wall_contacts_stale(
+    const struct wall_contacts *w, int64_t step, const double low[3], const double high[3]);
 
 /* Meshes: which candidates count in this step. */
 void wall_contacts_select(struct device *dev, struct wall_contacts *w, const struct particles *p);

@@ -1,6 +1,8 @@
-/* Named columns of numbers, and tables of them: the form in which the state reaches files. Knows neither files nor what the numbers mean.
+/* Named columns of numbers, and tables of them: the form in which the state reaches files. Knows
+ * neither files nor what the numbers mean.
  *
- * All ranks describe the same tables (equal names, types and widths in equal order) and each holds its own rows; nothing is owned here. */
+ * All ranks describe the same tables (equal names, types and widths in equal order) and each holds
+ * its own rows; nothing is owned here. */
 #ifndef DEMOCLES_COLUMN_H
 #define DEMOCLES_COLUMN_H
 

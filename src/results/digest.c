@@ -25,7 +25,8 @@ static uint64_t add_part(uint64_t h, const struct digest_part *part, int64_t i, 
     return h;
 }
 
-uint64_t digest_of_rank(const int64_t *gid, int64_t n, const struct digest_part *part, int n_part, int64_t *n_nan)
+uint64_t digest_of_rank(
+    const int64_t *gid, int64_t n, const struct digest_part *part, int n_part, int64_t *n_nan)
 {
     uint64_t sum = 0;
     for (int64_t i = 0; i < n; i++) {
@@ -38,11 +39,13 @@ uint64_t digest_of_rank(const int64_t *gid, int64_t n, const struct digest_part 
     return sum;
 }
 
-int64_t digest_of_all(const struct comm *comm, const int64_t *gid, int64_t n, const struct digest_part *part, int n_part, uint64_t *digest)
+int64_t digest_of_all(const struct comm *comm, const int64_t *gid, int64_t n,
+    const struct digest_part *part, int n_part, uint64_t *digest)
 {
     int64_t sum[2] = {0, 0}; /* digest, elements with NaN */
     uint64_t mine = digest_of_rank(gid, n, part, n_part, &sum[1]);
-    memcpy(&sum[0], &mine, sizeof mine); /* two's complement: MPI's sum of int64 wraps modulo 2^64 as ours does */
+    /* two's complement: MPI's sum of int64 wraps modulo 2^64 as ours does */
+    memcpy(&sum[0], &mine, sizeof mine);
     comm_sum_i64(comm, sum, 2);
     memcpy(digest, &sum[0], sizeof *digest);
     return sum[1];

@@ -12,10 +12,13 @@ static int64_t share_begin(int64_t n, int rank, int n_rank)
     return n * rank / n_rank;
 }
 
-struct frame_table frame_table_begin(const struct comm *comm, const struct h5_reader *reader, const char *name, const char *first)
+struct frame_table frame_table_begin(
+    const struct comm *comm, const struct h5_reader *reader, const char *name, const char *first)
 {
     int64_t n = h5_read_size(reader, name, first);
-    return (struct frame_table){.name = name, .n = share_begin(n, comm->rank + 1, comm->n_rank) - share_begin(n, comm->rank, comm->n_rank)};
+    return (struct frame_table){.name = name,
+        .n = share_begin(n, comm->rank + 1, comm->n_rank) -
+             share_begin(n, comm->rank, comm->n_rank)};
 }
 
 static size_t bytes_of(const struct frame_column *c)
@@ -23,13 +26,14 @@ static size_t bytes_of(const struct frame_column *c)
     return (size_t)c->width * column_type_size(c->type);
 }
 
-void *frame_table_add(
-    struct frame_table *table, const struct comm *comm, const struct h5_reader *reader, const char *column, enum column_type type, int width)
+void *frame_table_add(struct frame_table *table, const struct comm *comm,
+    const struct h5_reader *reader, const char *column, enum column_type type, int width)
 {
     struct frame_column *c = &table->column[table->n_column++];
     *c = (struct frame_column){column, type, width, NULL};
     c->data = fail_alloc((size_t)table->n * bytes_of(c));
-    int64_t begin = share_begin(h5_read_size(reader, table->name, column), comm->rank, comm->n_rank);
+    int64_t begin =
+        share_begin(h5_read_size(reader, table->name, column), comm->rank, comm->n_rank);
     h5_read_rows(reader, table->name, column, type, width, begin, table->n, c->data);
     return c->data;
 }
@@ -57,7 +61,8 @@ static bool goes(const int32_t *to, int64_t i, int n_to, int k)
     return own[k] >= 0;
 }
 
-static char *pack(const struct frame_table *table, const struct comm *comm, const int32_t *to, int n_to, int64_t *bytes_to)
+static char *pack(const struct frame_table *table, const struct comm *comm, const int32_t *to,
+    int n_to, int64_t *bytes_to)
 {
     size_t row = row_bytes(table);
     char **at = fail_alloc((size_t)comm->n_rank * sizeof *at);
@@ -83,10 +88,13 @@ static char *pack(const struct frame_table *table, const struct comm *comm, cons
     return send;
 }
 
-void frame_table_send(struct frame_table *table, const struct comm *comm, const int32_t *to, int n_to)
+void frame_table_send(
+    struct frame_table *table, const struct comm *comm, const int32_t *to, int n_to)
 {
-    int64_t *bytes_to = fail_alloc((size_t)comm->n_rank * sizeof *bytes_to), *bytes_from = fail_alloc((size_t)comm->n_rank * sizeof *bytes_from);
-    char *send = pack(table, comm, to, n_to, bytes_to), *recv = migrate_bytes(comm, send, bytes_to, bytes_from);
+    int64_t *bytes_to = fail_alloc((size_t)comm->n_rank * sizeof *bytes_to),
+            *bytes_from = fail_alloc((size_t)comm->n_rank * sizeof *bytes_from);
+    char *send = pack(table, comm, to, n_to, bytes_to),
+         *recv = migrate_bytes(comm, send, bytes_to, bytes_from);
     int64_t total = 0;
     for (int r = 0; r < comm->n_rank; r++) total += bytes_from[r];
     free(send);
@@ -112,10 +120,12 @@ void frame_table_free(struct frame_table *table)
     for (int k = 0; k < table->n_column; k++) free(table->column[k].data);
 }
 
-int32_t *frame_table_owners(const struct comm *comm, const int64_t *own, int64_t n_own, int64_t n_global)
+int32_t *frame_table_owners(
+    const struct comm *comm, const int64_t *own, int64_t n_own, int64_t n_global)
 {
     int32_t *owner = fail_alloc((size_t)n_global * sizeof *owner);
-    for (int64_t i = 0; i < n_own; i++) owner[own[i]] = comm->rank + 1; /* one rank alone says something of each id: or is all of it */
+    /* one rank alone says something of each id: or is all of it */
+    for (int64_t i = 0; i < n_own; i++) owner[own[i]] = comm->rank + 1;
     comm_or_i32(comm, owner, (int)n_global);
     for (int64_t i = 0; i < n_global; i++) owner[i]--;
     return owner;

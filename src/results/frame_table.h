@@ -1,4 +1,5 @@
-/* Tables of a frame on the ranks that need their rows: each rank reads a share, and rows go straight to where they belong. No rank ever has all. */
+/* Tables of a frame on the ranks that need their rows: each rank reads a share, and rows go
+ * straight to where they belong. No rank ever has all. */
 #ifndef DEMOCLES_FRAME_TABLE_H
 #define DEMOCLES_FRAME_TABLE_H
 
@@ -19,19 +20,24 @@ struct frame_table {
     } column[FRAME_TABLE_COLUMNS];
 };
 
-/* This rank's share of the rows of a table, of which columns are added one by one; `first` is any of its columns. */
-struct frame_table frame_table_begin(const struct comm *comm, const struct h5_reader *reader, const char *name, const char *first);
+/* This rank's share of the rows of a table, of which columns are added one by one; `first` is any
+ * of its columns. */
+struct frame_table frame_table_begin(
+    const struct comm *comm, const struct h5_reader *reader, const char *name, const char *first);
 /* Reads one more column. The returned memory is the table's, until its rows are sent. */
-void *frame_table_add(
-    struct frame_table *table, const struct comm *comm, const struct h5_reader *reader, const char *column, enum column_type type, int width);
+void *frame_table_add(struct frame_table *table, const struct comm *comm,
+    const struct h5_reader *reader, const char *column, enum column_type type, int width);
 /* A column by name, NULL if it has not been added. */
 void *frame_table_get(const struct frame_table *table, const char *column);
-/* Sends each row i to the ranks to[i * n_to + k], k < n_to: once to each; negative: to nobody. What arrives, in the order of ranks and rows, takes
- * the table's place. Collective. */
-void frame_table_send(struct frame_table *table, const struct comm *comm, const int32_t *to, int n_to);
+/* Sends each row i to the ranks to[i * n_to + k], k < n_to: once to each; negative: to nobody. What
+ * arrives, in the order of ranks and rows, takes the table's place. Collective. */
+void frame_table_send(
+    struct frame_table *table, const struct comm *comm, const int32_t *to, int n_to);
 void frame_table_free(struct frame_table *table);
 
-/* Who owns each of n_global ids, from what each rank says that it owns itself; -1: nobody. The caller frees. Collective. */
-int32_t *frame_table_owners(const struct comm *comm, const int64_t *own, int64_t n_own, int64_t n_global);
+/* Who owns each of n_global ids, from what each rank says that it owns itself; -1: nobody. The
+ * caller frees. Collective. */
+int32_t *frame_table_owners(
+    const struct comm *comm, const int64_t *own, int64_t n_own, int64_t n_global);
 
 #endif

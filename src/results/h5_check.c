@@ -25,11 +25,13 @@ static uint64_t bits_at(enum column_type type, const void *data, int64_t i)
 uint64_t h5_check_sum(enum column_type type, const void *data, int64_t n, int64_t begin)
 {
     uint64_t sum = 0;
-    for (int64_t i = 0; i < n; i++) sum += digest_mix(digest_mix((uint64_t)(begin + i) + DIGEST_G) ^ bits_at(type, data, i));
+    for (int64_t i = 0; i < n; i++)
+        sum += digest_mix(digest_mix((uint64_t)(begin + i) + DIGEST_G) ^ bits_at(type, data, i));
     return sum;
 }
 
-/* Column type of a stored type, and the type to read it with (-1: none of ours). The caller closes `memory`. */
+/* Column type of a stored type, and the type to read it with (-1: none of ours). The caller closes
+ * `memory`. */
 static enum column_type type_of(hid_t stored, hid_t *memory)
 {
     size_t size = H5Tget_size(stored);
@@ -50,7 +52,8 @@ static enum column_type type_of(hid_t stored, hid_t *memory)
 }
 
 /* Adds up rows [begin, end) of a dataset, some at a time. NULL, or what is wrong. */
-static const char *sum_rows(hid_t dataset, hid_t memory, enum column_type type, const hsize_t shape[2], hsize_t begin, hsize_t end, uint64_t *sum)
+static const char *sum_rows(hid_t dataset, hid_t memory, enum column_type type,
+    const hsize_t shape[2], hsize_t begin, hsize_t end, uint64_t *sum)
 {
     enum { PIECE = 1 << 24 }; /* [byte] read at once */
     size_t row_bytes = shape[1] * H5Tget_size(memory), per_row = row_bytes / column_type_size(type);
@@ -65,25 +68,31 @@ static const char *sum_rows(hid_t dataset, hid_t memory, enum column_type type, 
         good = H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL) >= 0 &&
                H5Dread(dataset, memory, here, space, H5P_DEFAULT, data) >= 0;
         H5Sclose(here);
-        if (good) *sum += h5_check_sum(type, data, (int64_t)(count[0] * per_row), (int64_t)(at * per_row));
+        if (good)
+            *sum +=
+                h5_check_sum(type, data, (int64_t)(count[0] * per_row), (int64_t)(at * per_row));
     }
     free(data);
     H5Sclose(space);
     return good ? NULL : "cannot be read";
 }
 
-static const char *sum_part(hid_t dataset, hid_t stored, hid_t space, int part, int n_part, uint64_t *sum)
+static const char *sum_part(
+    hid_t dataset, hid_t stored, hid_t space, int part, int n_part, uint64_t *sum)
 {
     hsize_t shape[2] = {0, 1};
     int rank = H5Sget_simple_extent_ndims(space);
-    if (rank < 1 || rank > 2 || H5Sget_simple_extent_dims(space, shape, NULL) < 0) return "its shape is none that democles writes";
+    if (rank < 1 || rank > 2 || H5Sget_simple_extent_dims(space, shape, NULL) < 0)
+        return "its shape is none that democles writes";
     hid_t memory;
     enum column_type type = type_of(stored, &memory);
     if (memory < 0) return "its type is none that democles writes";
     /* A damaged header may claim any size: never ask for more than the file can hold. */
     hsize_t stored_bytes = H5Dget_storage_size(dataset), row = shape[1] * H5Tget_size(memory);
-    const char *wrong = row == 0 || shape[0] > stored_bytes / row ? "it is shorter than its header says" : NULL;
-    hsize_t begin = shape[0] * (hsize_t)part / (hsize_t)n_part, end = shape[0] * ((hsize_t)part + 1) / (hsize_t)n_part;
+    const char *wrong =
+        row == 0 || shape[0] > stored_bytes / row ? "it is shorter than its header says" : NULL;
+    hsize_t begin = shape[0] * (hsize_t)part / (hsize_t)n_part,
+            end = shape[0] * ((hsize_t)part + 1) / (hsize_t)n_part;
     if (shape[0] == 0) wrong = NULL;
     else if (!wrong && begin < end) wrong = sum_rows(dataset, memory, type, shape, begin, end, sum);
     H5Tclose(memory);
@@ -99,7 +108,9 @@ const char *h5_check_part(hid_t dataset, int part, int n_part, uint64_t *sum, ui
     if (attribute >= 0) H5Aclose(attribute);
     if (code < 0) return "its checksum cannot be read";
     hid_t stored = H5Dget_type(dataset), space = H5Dget_space(dataset);
-    const char *wrong = stored < 0 || space < 0 ? "its header cannot be read" : sum_part(dataset, stored, space, part, n_part, sum);
+    const char *wrong = stored < 0 || space < 0
+                            ? "its header cannot be read"
+                            : sum_part(dataset, stored, space, part, n_part, sum);
     if (stored >= 0) H5Tclose(stored);
     if (space >= 0) H5Sclose(space);
     return wrong;

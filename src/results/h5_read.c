@@ -8,7 +8,8 @@
 
 static _Noreturn void give_up(const struct h5_reader *reader, const char *table, const char *name)
 {
-    fail_stop(EXIT_IO, "cannot read '%s': %s%s%s: %s", reader->path, table, table[0] ? "/" : "", name, h5_check_error());
+    fail_stop(EXIT_IO, "cannot read '%s': %s%s%s: %s", reader->path, table, table[0] ? "/" : "",
+        name, h5_check_error());
 }
 
 struct h5_reader *h5_open(const char *path)
@@ -31,7 +32,8 @@ void h5_close(struct h5_reader *reader)
     free(reader);
 }
 
-static void read_attribute(const struct h5_reader *reader, const char *name, hid_t memory, void *value)
+static void read_attribute(
+    const struct h5_reader *reader, const char *name, hid_t memory, void *value)
 {
     hid_t attribute = H5Aopen_by_name(reader->file, "democles", name, H5P_DEFAULT, H5P_DEFAULT);
     if (attribute < 0 || H5Aread(attribute, memory, value) < 0) give_up(reader, "", name);
@@ -77,7 +79,8 @@ bool h5_has(const struct h5_reader *reader, const char *table, const char *colum
     return has;
 }
 
-static hid_t open_column(const struct h5_reader *reader, const char *table, const char *column, hsize_t shape[2])
+static hid_t open_column(
+    const struct h5_reader *reader, const char *table, const char *column, hsize_t shape[2])
 {
     char *path = fail_format("democles/%s/%s", table, column);
     hid_t dataset = H5Dopen2(reader->file, path, H5P_DEFAULT);
@@ -97,19 +100,22 @@ int64_t h5_read_size(const struct h5_reader *reader, const char *table, const ch
     return (int64_t)shape[0];
 }
 
-void h5_read_rows(
-    const struct h5_reader *reader, const char *table, const char *column, enum column_type type, int width, int64_t begin, int64_t n, void *data)
+void h5_read_rows(const struct h5_reader *reader, const char *table, const char *column,
+    enum column_type type, int width, int64_t begin, int64_t n, void *data)
 {
-    const hid_t native[] = {H5T_NATIVE_DOUBLE, H5T_NATIVE_FLOAT, H5T_NATIVE_INT64, H5T_NATIVE_INT32, H5T_NATIVE_UINT8};
+    const hid_t native[] = {
+        H5T_NATIVE_DOUBLE, H5T_NATIVE_FLOAT, H5T_NATIVE_INT64, H5T_NATIVE_INT32, H5T_NATIVE_UINT8};
     hsize_t shape[2], start[2] = {(hsize_t)begin, 0}, count[2] = {(hsize_t)n, (hsize_t)width};
     hid_t dataset = open_column(reader, table, column, shape);
     if (shape[1] != (hsize_t)width || begin + n > (int64_t)shape[0])
-        fail_stop(
-            EXIT_IO, "cannot read '%s': %s/%s has %lld rows of %lld numbers", reader->path, table, column, (long long)shape[0], (long long)shape[1]);
-    hid_t space = H5Dget_space(dataset), here = H5Screate_simple(H5Sget_simple_extent_ndims(space), count, NULL);
+        fail_stop(EXIT_IO, "cannot read '%s': %s/%s has %lld rows of %lld numbers", reader->path,
+            table, column, (long long)shape[0], (long long)shape[1]);
+    hid_t space = H5Dget_space(dataset),
+          here = H5Screate_simple(H5Sget_simple_extent_ndims(space), count, NULL);
     if (n > 0) {
         H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL);
-        if (H5Dread(dataset, native[type], here, space, H5P_DEFAULT, data) < 0) give_up(reader, table, column);
+        if (H5Dread(dataset, native[type], here, space, H5P_DEFAULT, data) < 0)
+            give_up(reader, table, column);
     }
     H5Sclose(here);
     H5Sclose(space);

@@ -1,7 +1,9 @@
-/* Reading of frames that have been checked (snapshot_check): attributes of /democles, and rows of its tables.
+/* Reading of frames that have been checked (snapshot_check): attributes of /democles, and rows of
+ * its tables.
  *
- * Every rank opens the file by itself and reads what it asks for; nothing here is collective. What is not there, or cannot be read, ends the run with
- * EXIT_IO. Knows nothing of what the numbers mean. */
+ * Every rank opens the file by itself and reads what it asks for; nothing here is collective. What
+ * is not there, or cannot be read, ends the run with EXIT_IO. Knows nothing of what the numbers
+ * mean. */
 #ifndef DEMOCLES_H5_READ_H
 #define DEMOCLES_H5_READ_H
 
@@ -28,8 +30,9 @@ char *h5_read_text(const struct h5_reader *reader, const char *name);
 /* Whether the table has the column; how many rows all ranks together have written of it. */
 bool h5_has(const struct h5_reader *reader, const char *table, const char *column);
 int64_t h5_read_size(const struct h5_reader *reader, const char *table, const char *column);
-/* Rows begin to begin + n of a column, [n][width], as numbers of `type`: floats widen to doubles exactly. The width has to be that of the file. */
-void h5_read_rows(
-    const struct h5_reader *reader, const char *table, const char *column, enum column_type type, int width, int64_t begin, int64_t n, void *data);
+/* Rows begin to begin + n of a column, [n][width], as numbers of `type`: floats widen to doubles
+ * exactly. The width has to be that of the file. */
+void h5_read_rows(const struct h5_reader *reader, const char *table, const char *column,
+    enum column_type type, int width, int64_t begin, int64_t n, void *data);
 
 #endif

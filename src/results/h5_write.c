@@ -13,8 +13,8 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
-/* MPI says "input/output error" where the system said more: ": File too large", if its number is still there and one that tells of a place where no
- * more can be written; else nothing. */
+/* MPI says "input/output error" where the system said more: ": File too large", if its number is
+ * still there and one that tells of a place where no more can be written; else nothing. */
 static const char *system_reason(int number)
 {
     static char text[64];
@@ -25,19 +25,24 @@ static const char *system_reason(int number)
 
 /* Ends the job if a call of HDF5 failed on this rank.
  *
- * At once and without asking the others: a rank whose MPI_File_write_at_all failed leaves out the collective calls that follow it inside
- * of HDF5 1.10, and the others wait there for ever (seen with a full disk); only MPI_Abort is sure to end all of them. Where several ranks
- * fail together, the higher ones hold their tongue until the lowest has ended them. */
+ * At once and without asking the others: a rank whose MPI_File_write_at_all failed leaves out the
+ * collective calls that follow it inside of HDF5 1.10, and the others wait there for ever (seen
+ * with a full disk); only MPI_Abort is sure to end all of them. Where several ranks fail together,
+ * the higher ones hold their tongue until the lowest has ended them. */
 static void insist(const struct h5_writer *writer, bool ok, const char *call, const char *name)
 {
     int number = errno;
     if (ok) return;
-    const char *system = system_reason(number), *reason = h5_check_error(); /* before any other call of HDF5, which would forget it */
+    /* before any other call of HDF5, which would forget it */
+    const char *system = system_reason(number), *reason = h5_check_error();
     struct statvfs disk;
-    double free_bytes = statvfs(writer->tmp, &disk) == 0 ? (double)disk.f_bavail * (double)disk.f_frsize : (double)NAN;
+    double free_bytes = statvfs(writer->tmp, &disk) == 0
+                            ? (double)disk.f_bavail * (double)disk.f_frsize
+                            : (double)NAN;
     usleep(200000U * (unsigned)(writer->comm->rank < 10 ? writer->comm->rank : 10));
     unlink(writer->tmp);
-    fail_stop(EXIT_IO, "cannot write '%s': %s%s: %s%s (%.1f MB are free there)", writer->path, call, name, reason, system, 1e-6 * free_bytes);
+    fail_stop(EXIT_IO, "cannot write '%s': %s%s: %s%s (%.1f MB are free there)", writer->path, call,
+        name, reason, system, 1e-6 * free_bytes);
 }
 
 /* Outside of HDF5 rank 0 acts alone; its error text (empty: none) decides for all. */
@@ -47,7 +52,8 @@ static void agree_on_text(const struct h5_writer *writer, char text[FILES_ERROR_
     if (text[0]) fail_stop_together(EXIT_IO, "%s", text);
 }
 
-/* Asks the file system for the room before HDF5 begins: a full disk is then a plain error, not a half-done collective write. */
+/* Asks the file system for the room before HDF5 begins: a full disk is then a plain error, not a
+ * half-done collective write. */
 static void reserve(struct h5_writer *writer, int64_t bytes, char error[FILES_ERROR_SIZE])
 {
     writer->fd = open(writer->tmp, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
@@ -56,8 +62,10 @@ static void reserve(struct h5_writer *writer, int64_t bytes, char error[FILES_ER
         return;
     }
     if (bytes <= 0 || fallocate(writer->fd, 0, 0, bytes) == 0) return;
-    if (errno != ENOSPC && errno != EDQUOT && errno != EFBIG) return; /* a file system that cannot reserve: the writes will tell */
-    snprintf(error, FILES_ERROR_SIZE, "cannot write '%s' (%.1f MB): %s", writer->path, 1e-6 * (double)bytes, strerror(errno));
+    /* a file system that cannot reserve: the writes will tell */
+    if (errno != ENOSPC && errno != EDQUOT && errno != EFBIG) return;
+    snprintf(error, FILES_ERROR_SIZE, "cannot write '%s' (%.1f MB): %s", writer->path,
+        1e-6 * (double)bytes, strerror(errno));
     unlink(writer->tmp);
 }
 
@@ -67,7 +75,8 @@ static hid_t create_file(const struct h5_writer *writer)
     H5Pset_fapl_mpio(access, writer->comm->world, MPI_INFO_NULL);
     H5Pset_coll_metadata_write(access, true);
     H5Pset_all_coll_metadata_ops(access, true);
-    /* Object headers of version 2 carry checksums of their own: damage to attributes and shapes shows on opening. HDF5 knows them since 1.8. */
+    /* Object headers of version 2 carry checksums of their own: damage to attributes and shapes
+     * shows on opening. HDF5 knows them since 1.8. */
     H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18);
     hid_t file = H5Fcreate(writer->tmp, H5F_ACC_TRUNC, H5P_DEFAULT, access);
     H5Pclose(access);
@@ -92,19 +101,24 @@ struct h5_writer *h5_create(const struct comm *comm, const char *path, int64_t b
     char error[FILES_ERROR_SIZE] = "";
     if (comm->rank == 0) reserve(writer, bytes, error);
     agree_on_text(writer, error);
-    H5dont_atexit(); /* after MPI_Abort HDF5 must not try to save what failed; every file of ours is closed long before an orderly end */
+    /* after MPI_Abort HDF5 must not try to save what failed; every file of ours is closed long
+     * before an orderly end */
+    H5dont_atexit();
     H5Eget_auto2(H5E_DEFAULT, &writer->saved_print, &writer->saved_data);
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
     writer->file = create_file(writer);
     insist(writer, writer->file >= 0, "create", "");
-    /* Creation has cut the file to nothing and given the room back; KEEP_SIZE leaves the length to HDF5. */
-    if (writer->fd >= 0 && bytes > 0 && fallocate(writer->fd, FALLOC_FL_KEEP_SIZE, 0, bytes)) errno = 0;
+    /* Creation has cut the file to nothing and given the room back; KEEP_SIZE leaves the length to
+     * HDF5. */
+    if (writer->fd >= 0 && bytes > 0 && fallocate(writer->fd, FALLOC_FL_KEEP_SIZE, 0, bytes))
+        errno = 0;
     writer->transfer = H5Pcreate(H5P_DATASET_XFER);
     H5Pset_dxpl_mpio(writer->transfer, H5FD_MPIO_COLLECTIVE);
     return writer;
 }
 
-/* What only rank 0 does, when all ranks have closed: give back what was reserved too much, make it last, make it visible. */
+/* What only rank 0 does, when all ranks have closed: give back what was reserved too much, make it
+ * last, make it visible. */
 static void make_visible(struct h5_writer *writer, char error[FILES_ERROR_SIZE])
 {
     off_t size = lseek(writer->fd, 0, SEEK_END);
@@ -143,17 +157,20 @@ hid_t h5_group(struct h5_writer *writer, hid_t parent, const char *name)
 /* What a type is in memory and, the same on every machine, in the file. */
 static hid_t memory_type(enum column_type type)
 {
-    const hid_t native[] = {H5T_NATIVE_DOUBLE, H5T_NATIVE_FLOAT, H5T_NATIVE_INT64, H5T_NATIVE_INT32, H5T_NATIVE_UINT8};
+    const hid_t native[] = {
+        H5T_NATIVE_DOUBLE, H5T_NATIVE_FLOAT, H5T_NATIVE_INT64, H5T_NATIVE_INT32, H5T_NATIVE_UINT8};
     return native[type];
 }
 
 static hid_t stored_type(enum column_type type)
 {
-    const hid_t stored[] = {H5T_IEEE_F64LE, H5T_IEEE_F32LE, H5T_STD_I64LE, H5T_STD_I32LE, H5T_STD_U8LE};
+    const hid_t stored[] = {
+        H5T_IEEE_F64LE, H5T_IEEE_F32LE, H5T_STD_I64LE, H5T_STD_I32LE, H5T_STD_U8LE};
     return stored[type];
 }
 
-/* Fixed length, no terminator: what every reader of VTKHDF accepts. HDF5 knows no string of length 0: the empty text is one NUL. */
+/* Fixed length, no terminator: what every reader of VTKHDF accepts. HDF5 knows no string of length
+ * 0: the empty text is one NUL. */
 static hid_t text_type(const char *text)
 {
     bool is_ascii = true;
@@ -165,7 +182,8 @@ static hid_t text_type(const char *text)
     return type;
 }
 
-static void put_attribute(const struct h5_writer *writer, hid_t object, const char *name, hid_t stored, hid_t memory, int n, const void *data)
+static void put_attribute(const struct h5_writer *writer, hid_t object, const char *name,
+    hid_t stored, hid_t memory, int n, const void *data)
 {
     hsize_t size = (hsize_t)n;
     hid_t space = n > 0 ? H5Screate_simple(1, &size, NULL) : H5Screate(H5S_SCALAR);
@@ -176,7 +194,8 @@ static void put_attribute(const struct h5_writer *writer, hid_t object, const ch
     H5Sclose(space);
 }
 
-void h5_attribute(struct h5_writer *writer, hid_t object, const char *name, enum column_type type, int n, const void *data)
+void h5_attribute(struct h5_writer *writer, hid_t object, const char *name, enum column_type type,
+    int n, const void *data)
 {
     put_attribute(writer, object, name, stored_type(type), memory_type(type), n, data);
 }
@@ -188,8 +207,10 @@ void h5_attribute_text(struct h5_writer *writer, hid_t object, const char *name,
     H5Tclose(type);
 }
 
-/* One collective H5Dwrite of rows [begin, begin + n) of a dataset; n may be 0, the rank takes part all the same. */
-static void write_rows(const struct h5_writer *writer, hid_t dataset, hid_t memory, int width, int64_t begin, int64_t n, const void *data)
+/* One collective H5Dwrite of rows [begin, begin + n) of a dataset; n may be 0, the rank takes part
+ * all the same. */
+static void write_rows(const struct h5_writer *writer, hid_t dataset, hid_t memory, int width,
+    int64_t begin, int64_t n, const void *data)
 {
     const char nothing = 0;
     hid_t in_file = H5Dget_space(dataset);
@@ -202,30 +223,37 @@ static void write_rows(const struct h5_writer *writer, hid_t dataset, hid_t memo
         H5Sselect_none(in_file);
         H5Sselect_none(here);
     }
-    insist(writer, H5Dwrite(dataset, memory, here, in_file, writer->transfer, data ? data : &nothing) >= 0, "write", "");
+    insist(writer,
+        H5Dwrite(dataset, memory, here, in_file, writer->transfer, data ? data : &nothing) >= 0,
+        "write", "");
     H5Sclose(here);
     H5Sclose(in_file);
 }
 
 /* All rows, in as many collective writes as the rank with most of them needs. */
-static void write_pieces(const struct h5_writer *writer, hid_t dataset, hid_t memory, int width, struct h5_rows rows, const void *data)
+static void write_pieces(const struct h5_writer *writer, hid_t dataset, hid_t memory, int width,
+    struct h5_rows rows, const void *data)
 {
     size_t row_bytes = (size_t)width * H5Tget_size(memory);
-    int64_t step = (int64_t)(writer->piece / row_bytes) > 0 ? (int64_t)(writer->piece / row_bytes) : 1;
+    int64_t step =
+        (int64_t)(writer->piece / row_bytes) > 0 ? (int64_t)(writer->piece / row_bytes) : 1;
     int64_t n_piece = (rows.mine + step - 1) / step;
     comm_max_i64(writer->comm, &n_piece, 1);
     for (int64_t p = 0; p < n_piece; p++) {
         int64_t first = p * step < rows.mine ? p * step : rows.mine;
         int64_t n = rows.mine - first < step ? rows.mine - first : step;
-        write_rows(writer, dataset, memory, width, rows.begin + first, n, data ? (const char *)data + (size_t)first * row_bytes : NULL);
+        write_rows(writer, dataset, memory, width, rows.begin + first, n,
+            data ? (const char *)data + (size_t)first * row_bytes : NULL);
     }
 }
 
 /* [total][width], or [total] where width is 1. */
-static hid_t create_dataset(const struct h5_writer *writer, hid_t parent, const char *name, hid_t stored, int width, int64_t total)
+static hid_t create_dataset(const struct h5_writer *writer, hid_t parent, const char *name,
+    hid_t stored, int width, int64_t total)
 {
     hsize_t size[2] = {(hsize_t)total, (hsize_t)width};
-    hid_t space = H5Screate_simple(width > 1 ? 2 : 1, size, NULL), layout = H5Pcreate(H5P_DATASET_CREATE);
+    hid_t space = H5Screate_simple(width > 1 ? 2 : 1, size, NULL),
+          layout = H5Pcreate(H5P_DATASET_CREATE);
     H5Pset_layout(layout, H5D_CONTIGUOUS);
     H5Pset_fill_time(layout, H5D_FILL_TIME_NEVER);
     hid_t dataset = H5Dcreate2(parent, name, stored, space, H5P_DEFAULT, layout, H5P_DEFAULT);
@@ -235,7 +263,8 @@ static hid_t create_dataset(const struct h5_writer *writer, hid_t parent, const 
     return dataset;
 }
 
-static void describe(struct h5_writer *writer, hid_t dataset, const char *name, const char *unit, const char *description, uint64_t checksum)
+static void describe(struct h5_writer *writer, hid_t dataset, const char *name, const char *unit,
+    const char *description, uint64_t checksum)
 {
     h5_attribute_text(writer, dataset, "name", name);
     h5_attribute_text(writer, dataset, "unit", unit);
@@ -252,24 +281,31 @@ static uint64_t sum_of_ranks(const struct comm *comm, uint64_t mine)
     return mine;
 }
 
-void h5_column(struct h5_writer *writer, hid_t parent, const struct column *column, struct h5_rows rows)
+void h5_column(
+    struct h5_writer *writer, hid_t parent, const struct column *column, struct h5_rows rows)
 {
     int width = column->width;
     writer->n_dataset++;
-    hid_t dataset = create_dataset(writer, parent, column->name, stored_type(column->type), width, rows.total);
+    hid_t dataset =
+        create_dataset(writer, parent, column->name, stored_type(column->type), width, rows.total);
     write_pieces(writer, dataset, memory_type(column->type), width, rows, column->data);
     uint64_t mine = h5_check_sum(column->type, column->data, rows.mine * width, rows.begin * width);
-    describe(writer, dataset, column->name, column->unit, column->description, sum_of_ranks(writer->comm, mine));
+    describe(writer, dataset, column->name, column->unit, column->description,
+        sum_of_ranks(writer->comm, mine));
     H5Dclose(dataset);
 }
 
-void h5_text(struct h5_writer *writer, hid_t parent, const char *name, const char *description, const char *text)
+void h5_text(struct h5_writer *writer, hid_t parent, const char *name, const char *description,
+    const char *text)
 {
     writer->n_dataset++;
-    struct h5_rows rows = {.mine = writer->comm->rank == 0, .begin = writer->comm->rank > 0, .total = 1};
-    hid_t type = text_type(text), dataset = create_dataset(writer, parent, name, type, 1, rows.total);
+    struct h5_rows rows = {
+        .mine = writer->comm->rank == 0, .begin = writer->comm->rank > 0, .total = 1};
+    hid_t type = text_type(text),
+          dataset = create_dataset(writer, parent, name, type, 1, rows.total);
     write_pieces(writer, dataset, type, 1, rows, text);
-    describe(writer, dataset, name, "1", description, h5_check_sum(COLUMN_U8, text, (int64_t)H5Tget_size(type), 0));
+    describe(writer, dataset, name, "1", description,
+        h5_check_sum(COLUMN_U8, text, (int64_t)H5Tget_size(type), 0));
     H5Dclose(dataset);
     H5Tclose(type);
 }
@@ -277,5 +313,6 @@ void h5_text(struct h5_writer *writer, hid_t parent, const char *name, const cha
 void h5_link(struct h5_writer *writer, const char *path, hid_t to, const char *name)
 {
     writer->n_dataset++;
-    insist(writer, H5Lcreate_hard(writer->file, path, to, name, H5P_DEFAULT, H5P_DEFAULT) >= 0, "link ", name);
+    insist(writer, H5Lcreate_hard(writer->file, path, to, name, H5P_DEFAULT, H5P_DEFAULT) >= 0,
+        "link ", name);
 }

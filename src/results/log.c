@@ -11,22 +11,25 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Seconds between progress lines: on a terminal for the eye, in a file for whoever looks in now and then. */
+/* Seconds between progress lines: on a terminal for the eye, in a file for whoever looks in now and
+ * then. */
 static const double every_terminal = 0.2, every_file = 30.0;
 
 struct log {
     bool speaks, quiet; /* speaks: rank 0 */
     bool is_terminal;
-    FILE *file;                           /* log.txt, NULL before log_attach */
-    char *path, *early;                   /* early: text before log_attach */
-    int line_width;                       /* of the progress line now on the terminal; 0: none */
-    bool is_begun;                        /* progress */
-    double begun, last;                   /* [s] clock at the first call, and when a line was last shown */
+    FILE *file;         /* log.txt, NULL before log_attach */
+    char *path, *early; /* early: text before log_attach */
+    int line_width;     /* of the progress line now on the terminal; 0: none */
+    bool is_begun;      /* progress */
+    /* [s] clock at the first call, and when a line was last shown */
+    double begun, last;
     int64_t step_begun, step_last, tenth; /* tenth: of the run, already announced */
     double rate;                          /* [steps/s], smoothed; 0: not known yet */
 };
 
-/* Open MPI gives each rank a pseudo-terminal, wherever its own output goes: under mpirun that of mpirun (our parent, on its node) decides. */
+/* Open MPI gives each rank a pseudo-terminal, wherever its own output goes: under mpirun that of
+ * mpirun (our parent, on its node) decides. */
 static bool is_terminal(void)
 {
     if (!isatty(STDOUT_FILENO)) return false;
@@ -51,7 +54,8 @@ struct log *log_create(const struct comm *comm, bool quiet)
 static void to_file(struct log *log, const char *text)
 {
     if (log->file) {
-        if (fputs(text, log->file) == EOF || fflush(log->file)) fail_stop(EXIT_IO, "cannot write '%s': %s", log->path, strerror(errno));
+        if (fputs(text, log->file) == EOF || fflush(log->file))
+            fail_stop(EXIT_IO, "cannot write '%s': %s", log->path, strerror(errno));
         return;
     }
     char *longer = fail_format("%s%s", log->early ? log->early : "", text);
@@ -73,7 +77,8 @@ void log_attach(struct log *log, const char *dir, bool append)
 void log_free(struct log *log)
 {
     if (!log) return;
-    if (log->file && fclose(log->file)) fail_stop(EXIT_IO, "cannot write '%s': %s", log->path, strerror(errno));
+    if (log->file && fclose(log->file))
+        fail_stop(EXIT_IO, "cannot write '%s': %s", log->path, strerror(errno));
     free(log->path);
     free(log->early);
     free(log);
@@ -149,25 +154,32 @@ static void begin(struct log *log, const struct log_progress *p, double now)
     log->tenth = p->n_step > 0 ? 10 * p->step / p->n_step : 0;
 }
 
-/* Rate since the last line, smoothed, so that the time left does not jump at every rebuild of the lists. */
+/* Rate since the last line, smoothed, so that the time left does not jump at every rebuild of the
+ * lists. */
 static void take_rate(struct log *log, const struct log_progress *p, double now)
 {
     if (now <= log->last || p->step == log->step_last) return;
     double rate = (double)(p->step - log->step_last) / (now - log->last);
-    double weight = fmax(0.2, (now - log->last) / (now - log->begun)); /* the younger the run, the more the last piece counts */
+    /* the younger the run, the more the last piece counts */
+    double weight = fmax(0.2, (now - log->last) / (now - log->begun));
     log->rate = log->rate > 0 ? (1 - weight) * log->rate + weight * rate : rate;
 }
 
-static char *progress_text(const struct log *log, const struct log_progress *p, double now, bool is_end)
+static char *progress_text(
+    const struct log *log, const struct log_progress *p, double now, bool is_end)
 {
     char duration[LOG_DURATION_SIZE];
-    double rate = is_end && now > log->begun ? (double)(p->step - log->step_begun) / (now - log->begun) : log->rate;
+    double rate = is_end && now > log->begun
+                      ? (double)(p->step - log->step_begun) / (now - log->begun)
+                      : log->rate;
     double share = p->n_step > 0 ? 100.0 * (double)p->step / (double)p->n_step : 100.0;
     log_duration(is_end ? now - log->begun : (double)(p->n_step - p->step) / rate, duration);
     double element_steps = rate * (double)p->n_element;
     bool is_fast = element_steps >= 1e6;
-    return fail_format("step %lld of %lld (%.0f %%)  t = %.5g of %.5g s  %.3g %selement-steps/s  %s %s", (long long)p->step, (long long)p->n_step,
-        floor(share), p->time, p->end, is_fast ? 1e-6 * element_steps : element_steps, is_fast ? "million " : "", duration,
+    return fail_format(
+        "step %lld of %lld (%.0f %%)  t = %.5g of %.5g s  %.3g %selement-steps/s  %s %s",
+        (long long)p->step, (long long)p->n_step, floor(share), p->time, p->end,
+        is_fast ? 1e-6 * element_steps : element_steps, is_fast ? "million " : "", duration,
         is_end ? "in all" : "left");
 }
 
@@ -185,7 +197,8 @@ void log_progress(struct log *log, const struct log_progress *p)
     char *text = progress_text(log, p, now, false);
     if (log->is_terminal && !log->quiet) {
         int width = printf("\r%s", text) - 1;
-        if (width < log->line_width) printf("%*s", log->line_width - width, ""); /* the rest of a longer line before */
+        /* the rest of a longer line before */
+        if (width < log->line_width) printf("%*s", log->line_width - width, "");
         log->line_width = width;
         fflush(stdout);
         if (show_line) {

@@ -1,5 +1,6 @@
-/* What the run says: to stdout and DIR/log.txt, from rank 0 alone, and the progress line. Errors and warnings go to stderr through fail.h.
- * One log per process. Not collective; calls on other ranks do nothing. */
+/* What the run says: to stdout and DIR/log.txt, from rank 0 alone, and the progress line. Errors
+ * and warnings go to stderr through fail.h. One log per process. Not collective; calls on other
+ * ranks do nothing. */
 #ifndef DEMOCLES_LOG_H
 #define DEMOCLES_LOG_H
 
@@ -7,7 +8,8 @@
 
 struct log;
 
-/* `quiet`: nothing to stdout (log.txt gets everything). Text before log_attach is kept and goes into log.txt too. */
+/* `quiet`: nothing to stdout (log.txt gets everything). Text before log_attach is kept and goes
+ * into log.txt too. */
 struct log *log_create(const struct comm *comm, bool quiet);
 /* From now on also to DIR/log.txt; `append` for a continued run. Failure: EXIT_IO. */
 void log_attach(struct log *log, const char *dir, bool append);
@@ -23,8 +25,9 @@ struct log_progress {
     double time, end;     /* simulated [s] */
     int64_t n_element;    /* over all ranks */
 };
-/* Progress; may be called at every step (it reads a clock). Terminal: one line, rewritten five times a second.
- * File or batch log: a line each 30 s and at each tenth of the run. The first call starts the clock. */
+/* Progress; may be called at every step (it reads a clock). Terminal: one line, rewritten five
+ * times a second. File or batch log: a line each 30 s and at each tenth of the run. The first call
+ * starts the clock. */
 void log_progress(struct log *log, const struct log_progress *progress);
 /* Ends the progress line with the last state; later output starts on a fresh line. */
 void log_progress_end(struct log *log, const struct log_progress *progress);

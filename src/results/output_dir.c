@@ -24,7 +24,8 @@ struct outcome {
 static bool fail_with(struct outcome *outcome, int code, const char *what, const char *path)
 {
     outcome->code = code;
-    snprintf(outcome->text, sizeof outcome->text, "cannot %s '%s': %s", what, path, strerror(errno));
+    snprintf(
+        outcome->text, sizeof outcome->text, "cannot %s '%s': %s", what, path, strerror(errno));
     return false;
 }
 
@@ -36,7 +37,8 @@ static bool make_folders(const char *dir, struct outcome *outcome)
         if (*c != '/' && *c != '\0') continue;
         char kept = *c;
         *c = '\0';
-        if (mkdir(path, 0777) && errno != EEXIST) ok = fail_with(outcome, EXIT_IO, "create the folder", path);
+        if (mkdir(path, 0777) && errno != EEXIST)
+            ok = fail_with(outcome, EXIT_IO, "create the folder", path);
         *c = kept;
         if (kept == '\0') break;
     }
@@ -72,8 +74,9 @@ static bool is_result(const char *name)
 /* Names of files that every run makes, whatever its scene. */
 static bool is_ours(const char *name)
 {
-    const char *const fixed[] = {"log.txt", "scene.yaml", "resolved.yaml", "run.balance.csv", "trace.json", "stop", "run.json.tmp", "scene.yaml.tmp",
-        "resolved.yaml.tmp", "trace.json.tmp"};
+    const char *const fixed[] = {"log.txt", "scene.yaml", "resolved.yaml", "run.balance.csv",
+        "trace.json", "stop", "run.json.tmp", "scene.yaml.tmp", "resolved.yaml.tmp",
+        "trace.json.tmp"};
     if (is_result(name) || !fnmatch("frame_[0-9]*.hdf.tmp", name, 0)) return true;
     for (size_t k = 0; k < sizeof fixed / sizeof *fixed; k++) {
         if (!strcmp(name, fixed[k])) return true;
@@ -85,7 +88,8 @@ static bool holds_results(const char *dir)
 {
     DIR *folder = opendir(dir);
     bool found = false;
-    for (struct dirent *entry; folder && (entry = readdir(folder));) found |= is_result(entry->d_name);
+    for (struct dirent *entry; folder && (entry = readdir(folder));)
+        found |= is_result(entry->d_name);
     if (folder) closedir(folder);
     return found;
 }
@@ -101,16 +105,19 @@ static void remove_series(const char *dir, const char *measure)
 static yaml_node_t *value_of(yaml_document_t *document, yaml_node_t *map, const char *key)
 {
     if (!map || map->type != YAML_MAPPING_NODE) return NULL;
-    for (yaml_node_pair_t *pair = map->data.mapping.pairs.start; pair < map->data.mapping.pairs.top; pair++) {
+    for (yaml_node_pair_t *pair = map->data.mapping.pairs.start; pair < map->data.mapping.pairs.top;
+         pair++) {
         yaml_node_t *name = yaml_document_get_node(document, pair->key);
-        if (name && name->type == YAML_SCALAR_NODE && !strcmp((const char *)name->data.scalar.value, key)) {
+        if (name && name->type == YAML_SCALAR_NODE &&
+            !strcmp((const char *)name->data.scalar.value, key)) {
             return yaml_document_get_node(document, pair->value);
         }
     }
     return NULL;
 }
 
-/* The run before may have had other measures: their names stand in the scene that it left. What cannot be read names none. */
+/* The run before may have had other measures: their names stand in the scene that it left. What
+ * cannot be read names none. */
 static void remove_old_series(const char *dir)
 {
     char error[FILES_ERROR_SIZE], *path = fail_format("%s/resolved.yaml", dir);
@@ -125,9 +132,12 @@ static void remove_old_series(const char *dir)
     if (yaml_parser_load(&parser, &document)) {
         yaml_node_t *list = value_of(&document, yaml_document_get_root_node(&document), "measure");
         bool is_list = list && list->type == YAML_SEQUENCE_NODE;
-        for (yaml_node_item_t *item = is_list ? list->data.sequence.items.start : NULL; item && item < list->data.sequence.items.top; item++) {
-            yaml_node_t *name = value_of(&document, yaml_document_get_node(&document, *item), "name");
-            if (name && name->type == YAML_SCALAR_NODE) remove_series(dir, (const char *)name->data.scalar.value);
+        for (yaml_node_item_t *item = is_list ? list->data.sequence.items.start : NULL;
+             item && item < list->data.sequence.items.top; item++) {
+            yaml_node_t *name =
+                value_of(&document, yaml_document_get_node(&document, *item), "name");
+            if (name && name->type == YAML_SCALAR_NODE)
+                remove_series(dir, (const char *)name->data.scalar.value);
         }
         yaml_document_delete(&document);
     }
@@ -163,7 +173,8 @@ static bool remove_ours(const char *dir, struct outcome *outcome)
     return ok;
 }
 
-static bool put_file(const char *dir, const char *name, const char *text, size_t n, struct outcome *outcome)
+static bool put_file(
+    const char *dir, const char *name, const char *text, size_t n, struct outcome *outcome)
 {
     char *path = fail_format("%s/%s", dir, name);
     bool ok = files_replace(path, text, n, outcome->text);
@@ -172,7 +183,8 @@ static bool put_file(const char *dir, const char *name, const char *text, size_t
     return ok;
 }
 
-/* A scene.yaml of the user's own, other than the scene of this run, that our copy would overwrite. */
+/* A scene.yaml of the user's own, other than the scene of this run, that our copy would
+ * overwrite. */
 static bool has_other_scene(const char *dir, const char *scene, size_t n_scene)
 {
     char error[FILES_ERROR_SIZE], *path = fail_format("%s/scene.yaml", dir);
@@ -184,7 +196,8 @@ static bool has_other_scene(const char *dir, const char *scene, size_t n_scene)
     return differs;
 }
 
-/* A CSV of the user's own, perhaps what the scene reads, that a series would overwrite; NULL: none. */
+/* A CSV of the user's own, perhaps what the scene reads, that a series would overwrite; NULL:
+ * none. */
 static const char *other_series(const struct output_request *request)
 {
     const char *found = NULL;
@@ -197,25 +210,31 @@ static const char *other_series(const struct output_request *request)
 }
 
 /* What DIR holds that this run would destroy, or "". */
-static void find_others(const struct output_request *request, const char *scene, size_t n_scene, bool is_ours_already, char *what, size_t room)
+static void find_others(const struct output_request *request, const char *scene, size_t n_scene,
+    bool is_ours_already, char *what, size_t room)
 {
     const char *series = other_series(request);
     what[0] = '\0';
     if (holds_results(request->dir)) snprintf(what, room, "results already");
-    else if (!is_ours_already && has_other_scene(request->dir, scene, n_scene)) snprintf(what, room, "another scene.yaml");
-    else if (!is_ours_already && series) snprintf(what, room, "a file %s.csv, the name of a measure", series);
+    else if (!is_ours_already && has_other_scene(request->dir, scene, n_scene))
+        snprintf(what, room, "another scene.yaml");
+    else if (!is_ours_already && series)
+        snprintf(what, room, "a file %s.csv, the name of a measure", series);
 }
 
-static void create(const struct output_request *request, const char *scene, size_t n_scene, struct outcome *outcome)
+static void create(const struct output_request *request, const char *scene, size_t n_scene,
+    struct outcome *outcome)
 {
     const char *dir = request->dir;
     if (!make_folders(dir, outcome) || !lock(dir, outcome)) return;
-    bool is_ours_already = holds_results(dir) || exists(dir, "resolved.yaml"); /* the latter: a run that was killed before its first frame */
+    /* the latter: a run that was killed before its first frame */
+    bool is_ours_already = holds_results(dir) || exists(dir, "resolved.yaml");
     char why[300];
     find_others(request, scene, n_scene, is_ours_already, why, sizeof why);
     if (why[0] && !request->force) {
         outcome->code = EXIT_USAGE;
-        snprintf(outcome->text, sizeof outcome->text, "'%s' holds %s; --force replaces, -o DIR writes elsewhere", dir, why);
+        snprintf(outcome->text, sizeof outcome->text,
+            "'%s' holds %s; --force replaces, -o DIR writes elsewhere", dir, why);
         return;
     }
     if (is_ours_already) {
@@ -223,17 +242,22 @@ static void create(const struct output_request *request, const char *scene, size
         for (int k = 0; k < request->n_measure; k++) remove_series(dir, request->measure[k]);
         if (!remove_ours(dir, outcome)) return;
     }
-    if (exists(dir, "stop") && !remove_file(dir, "stop", outcome)) return; /* else this run would end at once */
-    if (put_file(dir, "scene.yaml", scene, n_scene, outcome)) put_file(dir, "resolved.yaml", request->resolved, strlen(request->resolved), outcome);
+    /* else this run would end at once */
+    if (exists(dir, "stop") && !remove_file(dir, "stop", outcome)) return;
+    if (put_file(dir, "scene.yaml", scene, n_scene, outcome))
+        put_file(dir, "resolved.yaml", request->resolved, strlen(request->resolved), outcome);
 }
 
 void output_dir_create(const struct comm *comm, const struct output_request *request)
 {
-    signal(SIGXFSZ, SIG_IGN); /* a limit on file sizes shall come back as an error of write, with a message, not kill the run */
+    /* a limit on file sizes shall come back as an error of write, with a message, not kill the
+     * run */
+    signal(SIGXFSZ, SIG_IGN);
     struct outcome outcome = {0, ""};
     if (comm->rank == 0) {
         size_t n = 0;
-        char *scene = files_read(request->scene_path, &n, outcome.text); /* first: it may lie in the very folder that is emptied */
+        /* first: it may lie in the very folder that is emptied */
+        char *scene = files_read(request->scene_path, &n, outcome.text);
         if (scene) create(request, scene, n, &outcome);
         else outcome.code = EXIT_IO;
         free(scene);
@@ -247,7 +271,8 @@ static bool is_over(const char *name, int64_t index)
 {
     long long number;
     if (!strcmp(name, "run.json") || !strcmp(name, "stop")) return true;
-    if (fnmatch("frame_[0-9]*.hdf", name, 0) && fnmatch("frame_[0-9]*.hdf.tmp", name, 0)) return false;
+    if (fnmatch("frame_[0-9]*.hdf", name, 0) && fnmatch("frame_[0-9]*.hdf.tmp", name, 0))
+        return false;
     return sscanf(name, "frame_%lld", &number) == 1 && number > index;
 }
 

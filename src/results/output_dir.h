@@ -1,4 +1,5 @@
-/* The folder of results: made, refused where it holds results already, emptied of our own files on request, and given the two scenes. */
+/* The folder of results: made, refused where it holds results already, emptied of our own files on
+ * request, and given the two scenes. */
 #ifndef DEMOCLES_OUTPUT_DIR_H
 #define DEMOCLES_OUTPUT_DIR_H
 
@@ -13,15 +14,19 @@ struct output_request {
     int n_measure;
 };
 
-/* Makes the folder with its parents, and writes scene.yaml and resolved.yaml into it. Collective: rank 0 acts, all agree; failure: EXIT_IO.
- * Where it holds frames or run.json, or a scene.yaml that is not ours: without `force` all stop with EXIT_USAGE; with it our own files go (frames,
- * run.json, log.txt, the scenes, stop, and the CSV files of the measures that the old resolved.yaml and `measure` name), and nothing else.
- * The folder is locked for the life of the process: where another run still writes into it, all stop with EXIT_USAGE.
- * From here on SIGXFSZ is ignored, so that a file-size limit is an error like a full disk. */
+/* Makes the folder with its parents, and writes scene.yaml and resolved.yaml into it. Collective:
+ * rank 0 acts, all agree; failure: EXIT_IO. Where it holds frames or run.json, or a scene.yaml that
+ * is not ours: without `force` all stop with EXIT_USAGE; with it our own files go (frames,
+ * run.json, log.txt, the scenes, stop, and the CSV files of the measures that the old resolved.yaml
+ * and `measure` name), and nothing else. The folder is locked for the life of the process: where
+ * another run still writes into it, all stop with EXIT_USAGE. From here on SIGXFSZ is ignored, so
+ * that a file-size limit is an error like a full disk. */
 void output_dir_create(const struct comm *comm, const struct output_request *request);
 
-/* The same for a run that goes on from frame number `index` there: later frames go, and run.json and stop; resolved.yaml is written anew. */
-void output_dir_resume(const struct comm *comm, const struct output_request *request, int64_t index);
+/* The same for a run that goes on from frame number `index` there: later frames go, and run.json
+ * and stop; resolved.yaml is written anew. */
+void output_dir_resume(
+    const struct comm *comm, const struct output_request *request, int64_t index);
 
 /* True if a file `stop` lies in dir. Not collective: ask on one rank. */
 bool output_dir_stop_asked(const char *dir);

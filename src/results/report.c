@@ -50,7 +50,8 @@ static void put_string(struct report *report, const char *value)
 static void put_number(struct report *report, double value)
 {
     char text[SERIES_NUMBER_SIZE];
-    if (!isfinite(value)) put(report, "null");                  /* JSON has neither NaN nor infinity */
+    /* JSON has neither NaN nor infinity */
+    if (!isfinite(value)) put(report, "null");
     else if (value == 0 && signbit(value)) put(report, "-0.0"); /* readers take -0 for an integer */
     else put(report, series_number(value, text));
 }
@@ -75,7 +76,8 @@ static void next(struct report *report, const char *key)
 
 static void open_level(struct report *report, const char *opening, char closing)
 {
-    if (report->depth == DEPTH_MAX) fail_stop(EXIT_IO, "run.json: nested deeper than %d", DEPTH_MAX);
+    if (report->depth == DEPTH_MAX)
+        fail_stop(EXIT_IO, "run.json: nested deeper than %d", DEPTH_MAX);
     put(report, opening);
     report->closing[report->depth] = closing;
     report->is_empty[report->depth] = true;
@@ -154,8 +156,10 @@ void report_end(struct report *report)
     put(report, closing);
 }
 
-/* One line {"min": a, "mean": b, "max": c} of all ranks' values; values [n_rank][stride], the first of each. */
-static void put_spread(struct report *report, const char *key, const double *value, int n_rank, int stride)
+/* One line {"min": a, "mean": b, "max": c} of all ranks' values; values [n_rank][stride], the first
+ * of each. */
+static void put_spread(
+    struct report *report, const char *key, const double *value, int n_rank, int stride)
 {
     double low = value[0], high = value[0], sum = 0;
     for (int r = 0; r < n_rank; r++) {
@@ -174,12 +178,14 @@ static void put_spread(struct report *report, const char *key, const double *val
     put(report, "}");
 }
 
-void report_timers(struct report *report, const char *key, const struct comm *comm, const struct timers *timers)
+void report_timers(
+    struct report *report, const char *key, const struct comm *comm, const struct timers *timers)
 {
     double *all = fail_alloc((size_t)comm->n_rank * sizeof timers->total);
     comm_gather(comm, timers->total, all, sizeof timers->total);
     report_begin(report, key);
-    for (int k = 0; k < TIMER_N; k++) put_spread(report, timer_label[k], all + k, comm->n_rank, TIMER_N);
+    for (int k = 0; k < TIMER_N; k++)
+        put_spread(report, timer_label[k], all + k, comm->n_rank, TIMER_N);
     report_end(report);
     free(all);
 }

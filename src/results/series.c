@@ -73,7 +73,8 @@ static void open_file(struct series *series, const char *mode)
     setvbuf(series->file, NULL, _IOFBF, BUFFER_SIZE);
 }
 
-static struct series *series_of(const struct comm *comm, const char *dir, const char *name, int n_column)
+static struct series *series_of(
+    const struct comm *comm, const char *dir, const char *name, int n_column)
 {
     struct series *series = fail_alloc(sizeof *series);
     series->n_column = n_column;
@@ -90,7 +91,8 @@ static void begin(struct series *series, const struct series_column *column)
     series_flush(series);
 }
 
-struct series *series_create(const struct comm *comm, const char *dir, const char *name, const struct series_column *column, int n_column)
+struct series *series_create(const struct comm *comm, const char *dir, const char *name,
+    const struct series_column *column, int n_column)
 {
     struct series *series = series_of(comm, dir, name, n_column);
     if (series->path) begin(series, column);
@@ -120,24 +122,28 @@ static char *contents(const char *path)
     return text;
 }
 
-void series_check(const struct comm *comm, const char *dir, const char *name, const struct series_column *column, int n_column)
+void series_check(const struct comm *comm, const char *dir, const char *name,
+    const struct series_column *column, int n_column)
 {
     if (comm->rank > 0) return;
-    char *path = fail_format("%s/%s.csv", dir, name), *first = header(column, n_column), *text = contents(path);
-    if (text[0] && strncmp(text, first, strlen(first))) fail_stop(EXIT_SCENE, "'%s' has other columns than the measure '%s'", path, name);
+    char *path = fail_format("%s/%s.csv", dir, name), *first = header(column, n_column),
+         *text = contents(path);
+    if (text[0] && strncmp(text, first, strlen(first)))
+        fail_stop(EXIT_SCENE, "'%s' has other columns than the measure '%s'", path, name);
     free(text);
     free(first);
     free(path);
 }
 
-struct series *series_resume(
-    const struct comm *comm, const char *dir, const char *name, const struct series_column *column, int n_column, double time)
+struct series *series_resume(const struct comm *comm, const char *dir, const char *name,
+    const struct series_column *column, int n_column, double time)
 {
     struct series *series = series_of(comm, dir, name, n_column);
     if (!series->path) return series;
     char *first = header(column, n_column), *text = contents(series->path);
     if (text[0]) {
-        if (truncate(series->path, (off_t)length_until(text, strlen(first), time))) stop(series, "shorten");
+        if (truncate(series->path, (off_t)length_until(text, strlen(first), time)))
+            stop(series, "shorten");
         open_file(series, "ae");
     } else {
         fail_warn("'%s' holds nothing; it begins anew", series->path);

@@ -9,12 +9,14 @@ void *sheet_keep(struct sheet *sheet, void *memory)
     return sheet->own[sheet->n_own++] = memory;
 }
 
-void sheet_add(struct sheet *sheet, const char *name, const char *unit, const char *text, enum column_type type, int width, const void *data)
+void sheet_add(struct sheet *sheet, const char *name, const char *unit, const char *text,
+    enum column_type type, int width, const void *data)
 {
     sheet->column[sheet->n++] = (struct column){name, unit, text, type, width, data};
 }
 
-void sheet_add_real(struct sheet *sheet, bool is_float, const char *name, const char *unit, const char *text, int width, const double *data, size_t n)
+void sheet_add_real(struct sheet *sheet, bool is_float, const char *name, const char *unit,
+    const char *text, int width, const double *data, size_t n)
 {
     if (!is_float) {
         sheet_add(sheet, name, unit, text, COLUMN_F64, width, data);

@@ -14,15 +14,18 @@ char *snapshot_path(const char *dir, int64_t index)
 static int64_t row_bytes(const struct table *table)
 {
     int64_t sum = 0;
-    for (int k = 0; k < table->n_column; k++) sum += (int64_t)column_type_size(table->column[k].type) * table->column[k].width;
+    for (int k = 0; k < table->n_column; k++)
+        sum += (int64_t)column_type_size(table->column[k].type) * table->column[k].width;
     return sum;
 }
 
-/* An upper estimate of the file's size, over all ranks: data, and room for headers and attributes of every dataset. */
+/* An upper estimate of the file's size, over all ranks: data, and room for headers and attributes
+ * of every dataset. */
 static int64_t estimate(const struct comm *comm, const struct frame *frame)
 {
     enum { PER_POINT = 3 * 8 + 1, PER_DATASET = 4096, FIXED = 65536 };
-    int64_t sum = frame->points.n_row * (row_bytes(&frame->points) + PER_POINT) + frame->cells.n_row * row_bytes(&frame->cells);
+    int64_t sum = frame->points.n_row * (row_bytes(&frame->points) + PER_POINT) +
+                  frame->cells.n_row * row_bytes(&frame->cells);
     int64_t n_dataset = frame->points.n_column + frame->cells.n_column + frame->n_state;
     for (int t = 0; t < frame->n_state; t++) {
         sum += frame->state[t].n_row * row_bytes(&frame->state[t]);
@@ -33,27 +36,33 @@ static int64_t estimate(const struct comm *comm, const struct frame *frame)
     return sum + n_dataset * PER_DATASET + FIXED + (int64_t)strlen(frame->resolved);
 }
 
-static void write_i64(struct h5_writer *writer, hid_t group, const char *name, const char *description, const int64_t *data, int64_t n)
+static void write_i64(struct h5_writer *writer, hid_t group, const char *name,
+    const char *description, const int64_t *data, int64_t n)
 {
     struct column column = {name, "1", description, COLUMN_I64, 1, data};
     h5_column(writer, group, &column, h5_rows_of(writer->comm, n));
 }
 
-/* n points, `corners` of them per cell: connectivity 0..n-1 and offsets 0, corners, ... n count within the rank's own part. */
+/* n points, `corners` of them per cell: connectivity 0..n-1 and offsets 0, corners, ... n count
+ * within the rank's own part. */
 static void write_cells(struct h5_writer *writer, hid_t group, int64_t n, int corners)
 {
     enum { VTK_VERTEX = 1, VTK_HEXAHEDRON = 12 };
-    int64_t n_cell = n / corners, *count = fail_alloc((size_t)(n + 1) * sizeof *count), *offset = fail_alloc((size_t)(n_cell + 1) * sizeof *offset);
+    int64_t n_cell = n / corners, *count = fail_alloc((size_t)(n + 1) * sizeof *count),
+            *offset = fail_alloc((size_t)(n_cell + 1) * sizeof *offset);
     unsigned char *kind = fail_alloc((size_t)n_cell);
     for (int64_t i = 0; i <= n; i++) count[i] = i;
     for (int64_t i = 0; i <= n_cell; i++) offset[i] = corners * i;
     memset(kind, corners == 1 ? VTK_VERTEX : VTK_HEXAHEDRON, (size_t)n_cell);
-    struct column types = {"Types", "1", corners == 1 ? "VTK cell type: vertex" : "VTK cell type: hexahedron", COLUMN_U8, 1, kind};
+    struct column types = {"Types", "1",
+        corners == 1 ? "VTK cell type: vertex" : "VTK cell type: hexahedron", COLUMN_U8, 1, kind};
     write_i64(writer, group, "NumberOfPoints", "points of each rank's part", &n, 1);
     write_i64(writer, group, "NumberOfCells", "cells of each rank's part", &n_cell, 1);
     write_i64(writer, group, "NumberOfConnectivityIds", "point indices of each rank's part", &n, 1);
-    write_i64(writer, group, "Connectivity", "points of each cell, counted within its part", count, n);
-    write_i64(writer, group, "Offsets", "begin of each cell in Connectivity, and the end, within each part", offset, n_cell + 1);
+    write_i64(
+        writer, group, "Connectivity", "points of each cell, counted within its part", count, n);
+    write_i64(writer, group, "Offsets",
+        "begin of each cell in Connectivity, and the end, within each part", offset, n_cell + 1);
     h5_column(writer, group, &types, h5_rows_of(writer->comm, n_cell));
     free(kind);
     free(count);
@@ -61,7 +70,8 @@ static void write_cells(struct h5_writer *writer, hid_t group, int64_t n, int co
 }
 
 /* Group `name` with the columns of the table from `first` on. */
-static void write_fields(struct h5_writer *writer, hid_t grid, const char *name, const struct table *table, int first)
+static void write_fields(
+    struct h5_writer *writer, hid_t grid, const char *name, const struct table *table, int first)
 {
     struct h5_rows rows = h5_rows_of(writer->comm, table->n_row);
     hid_t data = h5_group(writer, grid, name);
@@ -73,7 +83,8 @@ static void write_grid(struct h5_writer *writer, const struct frame *frame, stru
 {
     const struct table *points = &frame->points;
     const int64_t version[2] = {1, 0};
-    const char type[] = "UnstructuredGrid"; /* 16 bytes, no NUL, ASCII: else ParaView 5.11 refuses the file */
+    /* 16 bytes, no NUL, ASCII: else ParaView 5.11 refuses the file */
+    const char type[] = "UnstructuredGrid";
     hid_t grid = h5_group(writer, writer->file, "VTKHDF");
     h5_attribute(writer, grid, "Version", COLUMN_I64, 2, version);
     h5_attribute_text(writer, grid, "Type", type);
@@ -90,32 +101,42 @@ static void write_grid(struct h5_writer *writer, const struct frame *frame, stru
     H5Gclose(grid);
 }
 
-/* Index of the column of `shown` that is this column of the state (the same memory under the same name on every rank), or -1. */
-static int64_t same_column(const struct comm *comm, const struct table *shown, const struct table *table, const struct column *column)
+/* Index of the column of `shown` that is this column of the state (the same memory under the same
+ * name on every rank), or -1. */
+static int64_t same_column(const struct comm *comm, const struct table *shown,
+    const struct table *table, const struct column *column)
 {
-    int64_t found[2] = {-1, 1}; /* smallest and, negated, largest over the ranks agree where all found the same */
+    /* smallest and, negated, largest over the ranks agree where all found the same */
+    int64_t found[2] = {-1, 1};
     for (int k = 0; k < shown->n_column; k++) {
         const struct column *other = &shown->column[k];
-        if (strcmp(other->name, column->name) || other->type != column->type || other->width != column->width) continue;
-        if (shown->n_row == table->n_row && (other->data == column->data || table->n_row == 0)) found[0] = k;
+        if (strcmp(other->name, column->name) || other->type != column->type ||
+            other->width != column->width)
+            continue;
+        if (shown->n_row == table->n_row && (other->data == column->data || table->n_row == 0))
+            found[0] = k;
     }
     found[1] = -found[0];
     comm_min_i64(comm, found, 2);
     return found[0] == -found[1] ? found[0] : -1;
 }
 
-static void write_table(struct h5_writer *writer, hid_t state, hid_t counts, const struct frame *frame, const struct table *table)
+static void write_table(struct h5_writer *writer, hid_t state, hid_t counts,
+    const struct frame *frame, const struct table *table)
 {
     struct h5_rows rows = h5_rows_of(writer->comm, table->n_row);
     hid_t group = h5_group(writer, state, table->name);
     for (int k = 0; k < table->n_column; k++) {
         const struct column *column = &table->column[k];
-        int64_t point = same_column(writer->comm, &frame->points, table, column), cell = same_column(writer->comm, &frame->cells, table, column);
+        int64_t point = same_column(writer->comm, &frame->points, table, column),
+                cell = same_column(writer->comm, &frame->cells, table, column);
         if (point < 0 && cell < 0) {
             h5_column(writer, group, column, rows);
             continue;
         }
-        char *path = point == 0 ? fail_strdup("/VTKHDF/Points") : fail_format("/VTKHDF/%s/%s", point > 0 ? "PointData" : "CellData", column->name);
+        char *path = point == 0 ? fail_strdup("/VTKHDF/Points")
+                                : fail_format("/VTKHDF/%s/%s", point > 0 ? "PointData" : "CellData",
+                                      column->name);
         h5_link(writer, path, group, column->name);
         free(path);
     }
@@ -139,7 +160,8 @@ static void write_state(struct h5_writer *writer, const struct frame *frame, str
     }
     h5_text(writer, state, "resolved", "the scene with all defaults, as YAML", frame->resolved);
     hid_t counts = h5_group(writer, state, "rows");
-    for (int t = 0; t < frame->n_state; t++) write_table(writer, state, counts, frame, &frame->state[t]);
+    for (int t = 0; t < frame->n_state; t++)
+        write_table(writer, state, counts, frame, &frame->state[t]);
     H5Gclose(counts);
     h5_attribute(writer, state, "n_dataset", COLUMN_I64, 0, &writer->n_dataset);
     H5Gclose(state);

@@ -1,14 +1,19 @@
-/* Frames: VTKHDF 1.0 files that ParaView opens, with the whole state beside the picture, so that a run continues from any of them.
+/* Frames: VTKHDF 1.0 files that ParaView opens, with the whole state beside the picture, so that a
+ * run continues from any of them.
  *
  * frame_000123.hdf holds
- *   /VTKHDF        unstructured grid of one vertex, or hexahedron, per element: Points, PointData/NAME, CellData/NAME, FieldData/TimeValue; one part
+ *   /VTKHDF        unstructured grid of one vertex, or hexahedron, per element: Points,
+ *     PointData/NAME, CellData/NAME, FieldData/TimeValue; one part
  *                  per rank, rank after rank
- *   /democles      attributes format_version, step, time, index, n_element, n_dataset (in the whole file) and the caller's; dataset resolved (the
+ *   /democles      attributes format_version, step, time, index, n_element, n_dataset (in the whole
+ *     file) and the caller's; dataset resolved (the
  *                  scene as YAML)
- *   /democles/TABLE/COLUMN   every table of the state, rank after rank;  /democles/rows/TABLE [n_rank] says how many rows each rank had
- * Every dataset carries the attributes name, unit, description and checksum (see h5_check.h).
- * A column of the state that is a point or cell column too (same name, memory, type, width) is a hard link to it, not a copy.
- * A frame appears by rename, complete and on disk, or not at all. Knows no element, no device: it writes the tables that it is given. */
+ *   /democles/TABLE/COLUMN   every table of the state, rank after rank;  /democles/rows/TABLE
+ *     [n_rank] says how many rows each rank had
+ * Every dataset carries the attributes name, unit, description and checksum (see h5_check.h). A
+ * column of the state that is a point or cell column too (same name, memory, type, width) is a hard
+ * link to it, not a copy. A frame appears by rename, complete and on disk, or not at all. Knows no
+ * element, no device: it writes the tables that it is given. */
 #ifndef DEMOCLES_SNAPSHOT_H
 #define DEMOCLES_SNAPSHOT_H
 
@@ -17,7 +22,8 @@
 
 enum { SNAPSHOT_FORMAT_VERSION = 2 };
 
-/* A number that belongs to the frame as a whole, the same on every rank: an attribute of /democles. */
+/* A number that belongs to the frame as a whole, the same on every rank: an attribute of
+ * /democles. */
 struct frame_scalar {
     const char *name;
     enum column_type type; /* COLUMN_F64 or COLUMN_I64 */
@@ -27,10 +33,13 @@ struct frame_scalar {
 
 struct frame {
     int64_t step;
-    double time;               /* [s] */
-    int64_t index;             /* number in the file's name */
-    struct table points;       /* column 0: position [n][3] F64 or F32 [m]; the others become PointData */
-    bool hexahedra;            /* each eight points that follow each other are the corners of a cell, in VTK's order; else each point is a cell */
+    double time;   /* [s] */
+    int64_t index; /* number in the file's name */
+    /* column 0: position [n][3] F64 or F32 [m]; the others become PointData */
+    struct table points;
+    /* each eight points that follow each other are the corners of a cell, in VTK's order; else each
+     * point is a cell */
+    bool hexahedra;
     struct table cells;        /* CellData, a row per cell */
     const struct table *state; /* [n_state] the whole state, below /democles */
     int n_state;
@@ -39,14 +48,16 @@ struct frame {
     int n_scalar;
 };
 
-/* Writes DIR/frame_INDEX.hdf. Collective. On failure: no half file is left, one message, all ranks stop with EXIT_IO. */
+/* Writes DIR/frame_INDEX.hdf. Collective. On failure: no half file is left, one message, all ranks
+ * stop with EXIT_IO. */
 void snapshot_write(const struct comm *comm, const char *dir, const struct frame *frame);
 
 /* `DIR/frame_000123.hdf` in fresh memory, owned by the caller. */
 char *snapshot_path(const char *dir, int64_t index);
 
-/* Compares the frame's version and number of datasets, reads every dataset, each rank its share, and compares its checksum. Returns NULL if the
- * frame is whole, else what is wrong with it, in fresh memory owned by the caller, the same on every rank. Collective; `comm` NULL: alone. */
+/* Compares the frame's version and number of datasets, reads every dataset, each rank its share,
+ * and compares its checksum. Returns NULL if the frame is whole, else what is wrong with it, in
+ * fresh memory owned by the caller, the same on every rank. Collective; `comm` NULL: alone. */
 char *snapshot_check(const struct comm *comm, const char *path);
 
 #endif

@@ -1,5 +1,5 @@
-/* Whether a frame is whole. Every rank opens the file by itself, without MPI's files: what is damaged may fail on one rank and not on others, and
- * then none must wait inside of HDF5. */
+/* Whether a frame is whole. Every rank opens the file by itself, without MPI's files: what is
+ * damaged may fail on one rank and not on others, and then none must wait inside of HDF5. */
 #include "snapshot.h"
 
 #include <stdio.h>
@@ -28,8 +28,9 @@ static const char *add_dataset(struct walk *w, hid_t dataset, const char *path)
     return h5_check_part(dataset, w->part, w->n_part, &w->sum[n - 1], &w->expected[n - 1]);
 }
 
-/* What is wrong with the object `name` below `parent` (and with all below it), or NULL. An own walk: H5Ovisit of HDF5 1.10 loses handles where an
- * object cannot be opened. Hard links are read twice. */
+/* What is wrong with the object `name` below `parent` (and with all below it), or NULL. An own
+ * walk: H5Ovisit of HDF5 1.10 loses handles where an object cannot be opened. Hard links are read
+ * twice. */
 static char *walk_object(struct walk *w, hid_t parent, const char *name, const char *path)
 {
     hid_t object = H5Oopen(parent, name, H5P_DEFAULT);
@@ -43,9 +44,11 @@ static char *walk_object(struct walk *w, hid_t parent, const char *name, const c
         wrong = fail_format("%s: cannot be listed", path);
     }
     for (hsize_t k = 0; k < info.nlinks && !wrong; k++) {
-        ssize_t n = H5Lget_name_by_idx(object, ".", H5_INDEX_NAME, H5_ITER_INC, k, child, sizeof child, H5P_DEFAULT);
+        ssize_t n = H5Lget_name_by_idx(
+            object, ".", H5_INDEX_NAME, H5_ITER_INC, k, child, sizeof child, H5P_DEFAULT);
         char *child_path = fail_format("%s/%s", path, n > 0 ? child : "?");
-        wrong = n > 0 ? walk_object(w, object, child, child_path) : fail_format("%s: cannot be listed", path);
+        wrong = n > 0 ? walk_object(w, object, child, child_path)
+                      : fail_format("%s: cannot be listed", path);
         free(child_path);
     }
     H5Oclose(object);
@@ -69,15 +72,18 @@ static char *walk_file(struct walk *w, hid_t file)
     for (int k = 0; k < 2 && !wrong; k++) {
         htri_t exists = H5Lexists(file, group[k], H5P_DEFAULT);
         if (exists < 0) wrong = fail_strdup("its list of groups cannot be read");
-        else if (exists == 0) wrong = fail_format("no frame of democles: it has no group %s", group[k]);
+        else if (exists == 0)
+            wrong = fail_format("no frame of democles: it has no group %s", group[k]);
     }
     if (wrong) return wrong;
     int64_t version = number_of(file, "format_version"), n = number_of(file, "n_dataset");
     if (version < 0) return fail_strdup("its format version cannot be read");
     if (version != SNAPSHOT_FORMAT_VERSION)
-        return fail_format("its format version is %lld, this program's %d", (long long)version, SNAPSHOT_FORMAT_VERSION);
+        return fail_format("its format version is %lld, this program's %d", (long long)version,
+            SNAPSHOT_FORMAT_VERSION);
     for (int k = 0; k < 2 && !wrong; k++) wrong = walk_object(w, file, group[k], group[k]);
-    if (!wrong && w->n != n) wrong = fail_format("it has %lld of %lld datasets", (long long)w->n, (long long)n);
+    if (!wrong && w->n != n)
+        wrong = fail_format("it has %lld of %lld datasets", (long long)w->n, (long long)n);
     return wrong;
 }
 
@@ -85,12 +91,16 @@ static char *open_and_walk(struct walk *w, const char *path)
 {
     H5E_auto2_t print;
     void *print_data;
-    setenv("HDF5_USE_FILE_LOCKING", "FALSE", 0); /* frames are whole once they have their name, and some file systems know no locks */
-    H5dont_atexit();                             /* HDF5 1.10 loses count of a damaged file, and would complain on stderr when the program ends */
+    /* frames are whole once they have their name, and some file systems know no locks */
+    setenv("HDF5_USE_FILE_LOCKING", "FALSE", 0);
+    /* HDF5 1.10 loses count of a damaged file, and would complain on stderr when the program
+     * ends */
+    H5dont_atexit();
     H5Eget_auto2(H5E_DEFAULT, &print, &print_data);
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
     hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
-    char *wrong = file < 0 ? fail_format("cannot be opened: %s", h5_check_error()) : walk_file(w, file);
+    char *wrong =
+        file < 0 ? fail_format("cannot be opened: %s", h5_check_error()) : walk_file(w, file);
     if (file >= 0) H5Fclose(file);
     H5Eset_auto2(H5E_DEFAULT, print, print_data);
     return wrong;

@@ -8,7 +8,8 @@
 #include "results/report.h"
 #include "results/series.h"
 
-/* Shares of one sum; none is smaller than a 64th of the mean, so that every rank has work to be measured by. */
+/* Shares of one sum; none is smaller than a 64th of the mean, so that every rank has work to be
+ * measured by. */
 enum { SHARES = 1 << 20, SMALLEST = 64 };
 /* Weight of the newest measurement of speed. */
 #define NEWEST 0.5
@@ -46,7 +47,8 @@ void balance_add(struct balance *b, struct partition_part part)
     b->is_fresh = false;
 }
 
-/* Seconds that a step takes with the work as it is, and as it would be after a deal. Unequal speeds are made up for only where shares follow them. */
+/* Seconds that a step takes with the work as it is, and as it would be after a deal. Unequal speeds
+ * are made up for only where shares follow them. */
 static void predict(const struct balance *b, double *now, double *then)
 {
     double work = 0, speed = 0, slowest = HUGE_VAL;
@@ -58,7 +60,9 @@ static void predict(const struct balance *b, double *now, double *then)
         speed += b->speed[r];
         slowest = fmin(slowest, b->speed[r]);
     }
-    *then = speed > 0 ? b->scene->weights == WEIGHTS_MEASURED ? work / speed : work / (b->comm->n_rank * slowest) : *now;
+    *then = speed > 0 ? b->scene->weights == WEIGHTS_MEASURED ? work / speed
+                                                              : work / (b->comm->n_rank * slowest)
+                      : *now;
 }
 
 static void measure(struct balance *b, int64_t n_step, double busy)
@@ -67,8 +71,10 @@ static void measure(struct balance *b, int64_t n_step, double busy)
     double *all = fail_alloc((size_t)n * sizeof *all), sum = 0;
     comm_gather(b->comm, &busy, all, sizeof busy);
     for (int r = 0; r < n; r++) {
-        double speed = b->work[r] > 0 && all[r] > 0 ? (double)b->work[r] * (double)n_step / all[r] : 0;
-        if (speed > 0) b->speed[r] = b->speed[r] > 0 ? (1 - NEWEST) * b->speed[r] + NEWEST * speed : speed;
+        double speed =
+            b->work[r] > 0 && all[r] > 0 ? (double)b->work[r] * (double)n_step / all[r] : 0;
+        if (speed > 0)
+            b->speed[r] = b->speed[r] > 0 ? (1 - NEWEST) * b->speed[r] + NEWEST * speed : speed;
         sum += b->speed[r];
     }
     for (int r = 0; r < n && b->scene->weights == WEIGHTS_MEASURED; r++) {
@@ -86,7 +92,8 @@ void balance_look(struct balance *b, const struct timers *timers, int64_t step)
         looked = timers->begun[TIMER_LOOP];
         waited = written = 0;
     }
-    double busy = timer_now() - looked - (timers->total[TIMER_WAIT] - waited) - (timers->total[TIMER_OUTPUT] - written);
+    double busy = timer_now() - looked - (timers->total[TIMER_WAIT] - waited) -
+                  (timers->total[TIMER_OUTPUT] - written);
     b->step = step;
     if (n_step > 0 && b->comm->n_rank > 1) {
         measure(b, n_step, busy);
@@ -99,15 +106,18 @@ void balance_look(struct balance *b, const struct timers *timers, int64_t step)
 bool balance_is_due(const struct balance *b)
 {
     if (b->comm->n_rank == 1 || b->scene->every == 0) return false;
-    /* To deal anew or not is like to buy or to rent: who buys when the rent so far has come up to the price pays at most twice what a prophet would.
-     * What was lost since the last deal is also the forecast for as long a time to come (Nicol and Saltz, IEEE Trans. Comput. 37 (1988) 1073). */
+    /* To deal anew or not is like to buy or to rent: who buys when the rent so far has come up to
+     * the price pays at most twice what a prophet would. What was lost since the last deal is also
+     * the forecast for as long a time to come (Nicol and Saltz, IEEE Trans. Comput. 37 (1988)
+     * 1073). */
     if (b->scene->every == PARTITION_AUTO) return b->saving > b->cost;
     return b->step - b->dealt_at >= b->scene->every && b->imbalance > b->scene->threshold;
 }
 
 bool balance_is_uneven(struct balance *b)
 {
-    if (b->comm->n_rank == 1 || b->scene->every == 0 || b->scene->every == PARTITION_AUTO) return false;
+    if (b->comm->n_rank == 1 || b->scene->every == 0 || b->scene->every == PARTITION_AUTO)
+        return false;
     if (b->dealt_at != b->step && b->step - b->dealt_at < b->scene->every) return false;
     if (b->quality.imbalance <= b->scene->threshold) return false;
     b->quality = b->before;
@@ -140,11 +150,12 @@ void balance_end(struct balance *b, bool is_deal, int64_t n_moved)
 
 void balance_record(struct balance *b, const char *dir, double from)
 {
-    static const struct series_column column[] = {{"imbalance", "1"}, {"work", "1"}, {"cut", "1"}, {"repartitions", "1"}, {"moved", "1"}};
+    static const struct series_column column[] = {
+        {"imbalance", "1"}, {"work", "1"}, {"cut", "1"}, {"repartitions", "1"}, {"moved", "1"}};
     enum { COLUMNS = sizeof column / sizeof *column };
     if (b->comm->n_rank == 1) return;
-    b->record =
-        from < 0 ? series_create(b->comm, dir, "run.balance", column, COLUMNS) : series_resume(b->comm, dir, "run.balance", column, COLUMNS, from);
+    b->record = from < 0 ? series_create(b->comm, dir, "run.balance", column, COLUMNS)
+                         : series_resume(b->comm, dir, "run.balance", column, COLUMNS, from);
 }
 
 void balance_write(struct balance *b, double time)
@@ -152,7 +163,9 @@ void balance_write(struct balance *b, double time)
     double work = 0;
     if (!b->record) return;
     for (int r = 0; r < b->comm->n_rank; r++) work += (double)b->work[r];
-    series_add(b->record, time, (double[]){b->quality.imbalance, work, b->quality.cut, (double)b->n_deal, (double)b->n_moved});
+    series_add(b->record, time,
+        (double[]){
+            b->quality.imbalance, work, b->quality.cut, (double)b->n_deal, (double)b->n_moved});
     series_flush(b->record); /* lists are built rarely */
 }
 
@@ -179,8 +192,11 @@ void balance_print(const struct balance *b, struct log *log)
     const struct partition_quality *q = &b->quality;
     double n = q->n > 0 ? (double)q->n : 1;
     if (b->comm->n_rank == 1) return;
-    log_print(log, "partition %s: imbalance %.3g on average, %.3g at most; %.3g neighbours; %lld repartitions, %lld elements moved",
-        method_name[b->scene->method], q->imbalance_sum / n, q->imbalance_max, q->neighbours_sum / n, (long long)b->n_deal, (long long)b->n_moved);
+    log_print(log,
+        "partition %s: imbalance %.3g on average, %.3g at most; %.3g neighbours; %lld "
+        "repartitions, %lld elements moved",
+        method_name[b->scene->method], q->imbalance_sum / n, q->imbalance_max,
+        q->neighbours_sum / n, (long long)b->n_deal, (long long)b->n_moved);
 }
 
 static void report_ranks(const struct balance *b, struct report *r, double busy, int64_t n_element)
@@ -188,7 +204,8 @@ static void report_ranks(const struct balance *b, struct report *r, double busy,
     struct {
         int64_t n_element, work;
         double busy;
-    } mine = {n_element, b->part.work, busy}, *all = fail_alloc((size_t)b->comm->n_rank * sizeof *all);
+    } mine = {n_element, b->part.work, busy},
+      *all = fail_alloc((size_t)b->comm->n_rank * sizeof *all);
     double shares = 0;
     comm_gather(b->comm, &mine, all, sizeof mine);
     for (int k = 0; k < b->comm->n_rank; k++) shares += (double)b->share[k];
@@ -205,12 +222,16 @@ static void report_ranks(const struct balance *b, struct report *r, double busy,
     free(all);
 }
 
-void balance_report(const struct balance *b, struct report *r, const struct timers *timers, int64_t n_step, int64_t n_element)
+void balance_report(const struct balance *b, struct report *r, const struct timers *timers,
+    int64_t n_step, int64_t n_element)
 {
-    double steps = timers->total[TIMER_LOOP] - timers->total[TIMER_REGROUP], step = n_step > 0 ? steps / (double)n_step : 0;
-    static const char *const weights[] = {"interactions", "measured"}, *const boundary[] = {"both", "assigned"};
+    double steps = timers->total[TIMER_LOOP] - timers->total[TIMER_REGROUP],
+           step = n_step > 0 ? steps / (double)n_step : 0;
+    static const char *const weights[] = {"interactions", "measured"}, *const boundary[] = {
+                                                                           "both", "assigned"};
     const struct partition_quality *q = &b->quality;
-    double n = q->n > 0 ? (double)q->n : 1, cost = b->n_cost > 0 ? b->cost_sum / (double)b->n_cost : 0;
+    double n = q->n > 0 ? (double)q->n : 1,
+           cost = b->n_cost > 0 ? b->cost_sum / (double)b->n_cost : 0;
     report_begin(r, "partition");
     report_text(r, "method", method_name[b->scene->method]);
     report_text(r, "weights", weights[b->scene->weights]);

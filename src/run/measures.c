@@ -20,7 +20,8 @@ struct measures *measures_create(struct sim *s)
         const struct series_column *column;
         int n = s->ops->measure_columns(s->scene->measure[i].kind, &column);
         const char *name = s->scene->measure[i].name;
-        m->series[i] = s->from ? series_resume(s->comm, s->options->dir, name, column, n, (double)s->from->step * s->dt)
+        m->series[i] = s->from ? series_resume(s->comm, s->options->dir, name, column, n,
+                                     (double)s->from->step * s->dt)
                                : series_create(s->comm, s->options->dir, name, column, n);
     }
     return m;
@@ -53,7 +54,8 @@ void measures_write(struct sim *s, struct measures *m)
 {
     bool any = false, *due = fail_alloc((size_t)m->n * sizeof *due);
     double(*value)[MEASURE_COLUMNS] = fail_alloc((size_t)m->n * sizeof *value);
-    for (int i = 0; i < m->n; i++) any |= due[i] = s->rest.reached || s->step % measures_every(s, i) == 0;
+    for (int i = 0; i < m->n; i++)
+        any |= due[i] = s->rest.reached || s->step % measures_every(s, i) == 0;
     if (any) s->ops->measure(s, due, value);
     for (int i = 0; i < m->n; i++)
         if (due[i]) series_add(m->series[i], (double)s->step * s->dt, value[i]);

@@ -1,4 +1,5 @@
-/* Measures: what the scene asks to be written as time series. One line per due step; sums over ranks are sums of integers. */
+/* Measures: what the scene asks to be written as time series. One line per due step; sums over
+ * ranks are sums of integers. */
 #ifndef DEMOCLES_MEASURES_H
 #define DEMOCLES_MEASURES_H
 
@@ -7,13 +8,15 @@
 
 struct measures;
 
-/* Whether the files that are there are those of the measures; of a run that goes on, before it changes anything. Ends the run where they are not. */
+/* Whether the files that are there are those of the measures; of a run that goes on, before it
+ * changes anything. Ends the run where they are not. */
 void measures_check(struct sim *s);
 struct measures *measures_create(struct sim *s);
 void measures_free(struct measures *m);
 /* Steps between lines of measure i. */
 int64_t measures_every(const struct sim *s, int i);
-/* Adds a line to every measure that is due at s->step, to all at rest (lattice.relax). Collective; the state on the device is an observed one. */
+/* Adds a line to every measure that is due at s->step, to all at rest (lattice.relax). Collective;
+ * the state on the device is an observed one. */
 void measures_write(struct sim *s, struct measures *m);
 void measures_flush(struct measures *m);
 #endif

@@ -33,7 +33,8 @@ struct outputs *output_create(struct sim *s)
     struct outputs *out = fail_alloc(sizeof *out);
     const char **name = fail_alloc((size_t)s->scene->n_measure * sizeof *name);
     for (int i = 0; i < s->scene->n_measure; i++) name[i] = s->scene->measure[i].name;
-    struct output_request request = {s->options->dir, s->options->force, s->scene->path, s->scene->resolved, name, s->scene->n_measure};
+    struct output_request request = {s->options->dir, s->options->force, s->scene->path,
+        s->scene->resolved, name, s->scene->n_measure};
     if (s->from) measures_check(s);
     if (s->from) output_dir_resume(s->comm, &request, s->from->index);
     else output_dir_create(s->comm, &request);
@@ -83,7 +84,8 @@ void output_write(struct sim *s, bool last)
         out->frame_step = s->step;
     }
     timer_end(&s->timers, TIMER_OUTPUT);
-    s->timers.total[TIMER_EXCHANGE] = before.total[TIMER_EXCHANGE]; /* what the output exchanges is the output's */
+    /* what the output exchanges is the output's */
+    s->timers.total[TIMER_EXCHANGE] = before.total[TIMER_EXCHANGE];
     s->timers.total[TIMER_WAIT] = before.total[TIMER_WAIT];
     trace_lap(s->dev->trace, "output");
 }
@@ -111,12 +113,14 @@ _Noreturn void output_stop_numerics(struct sim *s, const char *what, ...)
     measures_flush(s->output->measures);
     trace_step(s->trace, -1);
     record_write(s, EXIT_NUMERICS, false);
-    fail_stop_together(EXIT_NUMERICS, "step %lld, t = %.9g s: %s", (long long)s->step, (double)s->step * s->dt, text);
+    fail_stop_together(EXIT_NUMERICS, "step %lld, t = %.9g s: %s", (long long)s->step,
+        (double)s->step * s->dt, text);
 }
 
 void output_close(struct sim *s, int exit_code)
 {
     measures_flush(s->output->measures);
     if (!record_write(s, exit_code, true))
-        fail_stop_together(EXIT_NUMERICS, "step %lld, t = %.9g s: the last state holds NaN", (long long)s->step, (double)s->step * s->dt);
+        fail_stop_together(EXIT_NUMERICS, "step %lld, t = %.9g s: the last state holds NaN",
+            (long long)s->step, (double)s->step * s->dt);
 }

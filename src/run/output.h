@@ -1,4 +1,5 @@
-/* What a run gives out while it runs: measures, frames, the decision to stop. Collective unless said otherwise. */
+/* What a run gives out while it runs: measures, frames, the decision to stop. Collective unless
+ * said otherwise. */
 #ifndef DEMOCLES_OUTPUT_H
 #define DEMOCLES_OUTPUT_H
 
@@ -12,15 +13,20 @@ struct outputs;
 struct outputs *output_create(struct sim *s);
 void output_free(struct outputs *out);
 
-/* Whether anything is due at this step, so that it must be observed. Not collective, the same on all ranks. */
+/* Whether anything is due at this step, so that it must be observed. Not collective, the same on
+ * all ranks. */
 bool output_due(const struct sim *s, int64_t step);
-/* Writes what is due at s->step; the state on the device is an observed one. `last`: a frame in any case. */
+/* Writes what is due at s->step; the state on the device is an observed one. `last`: a frame in any
+ * case. */
 void output_write(struct sim *s, bool last);
 
-/* A signal, the file `stop`, or --max-time: on this rank, looked at now and then. Not collective. */
+/* A signal, the file `stop`, or --max-time: on this rank, looked at now and then. Not
+ * collective. */
 bool output_stop_wanted(struct sim *s);
-/* Ends the run because the numbers are no good: run.json is written, exit code EXIT_NUMERICS on all ranks. Frames that are there stay. */
-_Noreturn void output_stop_numerics(struct sim *s, const char *what, ...) __attribute__((format(printf, 2, 3)));
+/* Ends the run because the numbers are no good: run.json is written, exit code EXIT_NUMERICS on all
+ * ranks. Frames that are there stay. */
+_Noreturn void output_stop_numerics(struct sim *s, const char *what, ...)
+    __attribute__((format(printf, 2, 3)));
 /* Digest, run.json and the closing words. */
 void output_close(struct sim *s, int exit_code);
 

@@ -73,14 +73,17 @@ static void add_scale(struct report *r, struct sim *s)
     report_spread(r, "neighbours", s->comm, mine.n_neighbour);
     report_spread(r, "elements", s->comm, (double)mine.n_boundary);
     report_end(r);
-    report_number(r, "device_bytes_per_element", (double)sum[2] / (double)(s->n_first > 0 ? s->n_first : 1));
+    report_number(
+        r, "device_bytes_per_element", (double)sum[2] / (double)(s->n_first > 0 ? s->n_first : 1));
 }
 
-/* Copies and allocations in plain steps (sim.h), sums over ranks: what shows that the state stays on the device. */
+/* Copies and allocations in plain steps (sim.h), sums over ranks: what shows that the state stays
+ * on the device. */
 static void add_plain_steps(struct report *r, const struct sim *s)
 {
     const struct device_counters *c = &s->plain;
-    static const char *const name[] = {"allocations", "to_device", "to_device_bytes", "from_device", "from_device_bytes", "launches"};
+    static const char *const name[] = {"allocations", "to_device", "to_device_bytes", "from_device",
+        "from_device_bytes", "launches"};
     int64_t sum[6] = {c->n_alloc, c->n_h2d, c->h2d_bytes, c->n_d2h, c->d2h_bytes, c->n_launch};
     comm_sum_i64(s->comm, sum, 6);
     report_begin(r, "plain_steps");
@@ -89,7 +92,8 @@ static void add_plain_steps(struct report *r, const struct sim *s)
     report_end(r);
 }
 
-/* Times, bytes and plain steps are of this process; steps, energies and counters of the run as a whole. */
+/* Times, bytes and plain steps are of this process; steps, energies and counters of the run as a
+ * whole. */
 static void add_resumed(struct report *r, const struct sim *s)
 {
     const char *slash = strrchr(s->from->path, '/');
@@ -125,7 +129,9 @@ bool record_write(struct sim *s, int exit_code, bool observed)
     report_text(r, "title", s->scene->title);
     report_text(r, "method", s->ops->name);
     report_text(r, "precision", precision[s->scene->precision]);
-    report_text(r, "scheme", lattice_schemes_table((enum lattice_scheme)s->scene->time.scheme)->name); /* particles: leapfrog */
+    /* particles: leapfrog */
+    report_text(
+        r, "scheme", lattice_schemes_table((enum lattice_scheme)s->scene->time.scheme)->name);
     report_integer(r, "ranks", s->comm->n_rank);
     add_devices(r, s);
     balance_report(s->balance, r, &s->timers, s->step - s->begun_at, s->ops->n_owned(s));
@@ -147,8 +153,10 @@ bool record_write(struct sim *s, int exit_code, bool observed)
     bool written = report_write(r, s->comm, s->options->dir);
     if (observed) {
         double loop = s->timers.total[TIMER_LOOP];
-        log_print(s->log, "%lld steps of %lld elements in %.2f s: %.3g million element steps per second", (long long)(s->step - s->begun_at),
-            (long long)s->n_first, loop, loop > 0 ? s->element_steps / loop * 1e-6 : 0);
+        log_print(s->log,
+            "%lld steps of %lld elements in %.2f s: %.3g million element steps per second",
+            (long long)(s->step - s->begun_at), (long long)s->n_first, loop,
+            loop > 0 ? s->element_steps / loop * 1e-6 : 0);
         balance_print(s->balance, s->log);
         log_print(s->log, "digest %s", whole ? digest : "none: the state holds NaN");
     }

@@ -4,8 +4,9 @@
 
 #include "sim.h"
 
-/* Collective. `observed`: the state on the device is one of full steps, so that energies and the digest can be taken; if it then holds NaN, false is
- * returned and the exit code in the record is EXIT_NUMERICS. */
+/* Collective. `observed`: the state on the device is one of full steps, so that energies and the
+ * digest can be taken; if it then holds NaN, false is returned and the exit code in the record is
+ * EXIT_NUMERICS. */
 bool record_write(struct sim *s, int exit_code, bool observed);
 
 #endif

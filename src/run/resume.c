@@ -26,7 +26,9 @@ static int64_t *frames_of(const char *dir, int64_t *n)
     for (struct dirent *entry; folder && (entry = readdir(folder));) {
         long long number;
         int length = 0;
-        if (sscanf(entry->d_name, "frame_%lld.hdf%n", &number, &length) != 1 || length == 0 || entry->d_name[length] || number < 0) continue;
+        if (sscanf(entry->d_name, "frame_%lld.hdf%n", &number, &length) != 1 || length == 0 ||
+            entry->d_name[length] || number < 0)
+            continue;
         index = fail_realloc(index, (size_t)(*n + 1) * sizeof *index);
         index[(*n)++] = number;
     }
@@ -41,7 +43,8 @@ static int64_t *share_frames(const struct comm *comm, const char *dir, int64_t *
     int64_t *index = comm->rank == 0 ? frames_of(dir, n) : NULL;
     comm_bcast(comm, n, sizeof *n, 0);
     if (*n < 0)
-        fail_stop_together(*n == -ENOENT || *n == -ENOTDIR ? EXIT_SCENE : EXIT_IO, "cannot open the folder '%s': %s", dir, strerror((int)-*n));
+        fail_stop_together(*n == -ENOENT || *n == -ENOTDIR ? EXIT_SCENE : EXIT_IO,
+            "cannot open the folder '%s': %s", dir, strerror((int)-*n));
     if (*n == 0) fail_stop_together(EXIT_SCENE, "'%s' holds no frame_*.hdf to go on from", dir);
     if (comm->rank > 0) index = fail_alloc((size_t)*n * sizeof *index);
     comm_bcast(comm, index, (size_t)*n * sizeof *index, 0);
@@ -56,7 +59,8 @@ struct resume *resume_open(const struct comm *comm, struct log *log, const char 
         path = snapshot_path(dir, index[k]);
         char *wrong = snapshot_check(comm, path);
         if (!wrong) break;
-        log_warn(log, "'%s' cannot be used: %s%s", path, wrong, k + 1 < n ? "; the frame before is looked at" : "");
+        log_warn(log, "'%s' cannot be used: %s%s", path, wrong,
+            k + 1 < n ? "; the frame before is looked at" : "");
         free(wrong);
         free(path);
     }
@@ -88,8 +92,10 @@ void resume_free(struct resume *r)
     free(r);
 }
 
-/* Keys, with all below them, that the state does not depend on; and the last words of keys that name files, whose content is compared. */
-static const char *const may_change[] = {"title", "time.end", "time.allow_unstable", "lattice.relax.tolerance", "output", "measure", "partition"};
+/* Keys, with all below them, that the state does not depend on; and the last words of keys that
+ * name files, whose content is compared. */
+static const char *const may_change[] = {"title", "time.end", "time.allow_unstable",
+    "lattice.relax.tolerance", "output", "measure", "partition"};
 static const char *const names_file[] = {".stl", ".file", ".table"};
 
 static bool is_file(const char *set)
@@ -117,7 +123,8 @@ static void refuse_changes(const char *const *set, int n_set)
     for (int k = 0; k < n_set; k++)
         if (!can_change(set[k]))
             fail_stop_together(EXIT_SCENE,
-                "--set %s: a run that goes on cannot change '%.*s'; it can change title, time.end, time.allow_unstable, lattice.relax.tolerance, "
+                "--set %s: a run that goes on cannot change '%.*s'; it can change title, "
+                "time.end, time.allow_unstable, lattice.relax.tolerance, "
                 "output, measure, partition, and where files are",
                 set[k], (int)strcspn(set[k], "="), set[k]);
 }
@@ -128,15 +135,18 @@ static void warn_of_edits(const struct comm *comm, const char *path, const char 
     char error[FILES_ERROR_SIZE];
     size_t n = 0;
     char *file = comm->rank == 0 ? files_read(path, &n, error) : NULL;
-    if (file && strcmp(file, text)) fail_warn("'%s' is not the scene of the frame, which counts; changes go by --set", path);
+    if (file && strcmp(file, text))
+        fail_warn("'%s' is not the scene of the frame, which counts; changes go by --set", path);
     free(file);
 }
 
-struct scene *resume_scene(const struct comm *comm, struct resume *r, const char *const *set, int n_set)
+struct scene *resume_scene(
+    const struct comm *comm, struct resume *r, const char *const *set, int n_set)
 {
     refuse_changes(set, n_set);
     struct scene_errors errors = {0};
-    char *text = h5_read_text(r->reader, "resolved"), *path = fail_format("%s/resolved.yaml", r->dir);
+    char *text = h5_read_text(r->reader, "resolved"),
+         *path = fail_format("%s/resolved.yaml", r->dir);
     warn_of_edits(comm, path, text);
     const char **file = fail_alloc((size_t)n_set * sizeof *file);
     int n_file = 0;
@@ -157,10 +167,14 @@ static const struct {
     enum column_type type;
     size_t at; /* in struct sim, or in its balance */
     bool is_balance;
-} noted[RESUME_SCALARS] = {{"dt", COLUMN_F64, offsetof(struct sim, dt), false}, {"inputs", COLUMN_I64, offsetof(struct sim, inputs), false},
-    {"limit_at", COLUMN_I64, offsetof(struct sim, limit_at), false}, {"dt_limit", COLUMN_F64, offsetof(struct sim, dt_limit), false},
-    {"n_removed", COLUMN_I64, offsetof(struct sim, n_removed), false}, {"n_rebuild", COLUMN_I64, offsetof(struct sim, n_rebuild), false},
-    {"n_repartition", COLUMN_I64, offsetof(struct balance, n_deal), true}, {"n_moved", COLUMN_I64, offsetof(struct balance, n_moved), true}};
+} noted[RESUME_SCALARS] = {{"dt", COLUMN_F64, offsetof(struct sim, dt), false},
+    {"inputs", COLUMN_I64, offsetof(struct sim, inputs), false},
+    {"limit_at", COLUMN_I64, offsetof(struct sim, limit_at), false},
+    {"dt_limit", COLUMN_F64, offsetof(struct sim, dt_limit), false},
+    {"n_removed", COLUMN_I64, offsetof(struct sim, n_removed), false},
+    {"n_rebuild", COLUMN_I64, offsetof(struct sim, n_rebuild), false},
+    {"n_repartition", COLUMN_I64, offsetof(struct balance, n_deal), true},
+    {"n_moved", COLUMN_I64, offsetof(struct balance, n_moved), true}};
 
 static void *noted_at(const struct sim *s, int k)
 {
@@ -192,5 +206,7 @@ void resume_check_inputs(const struct sim *s)
 {
     if (h5_read_i64(s->from->reader, "inputs") == s->inputs) return;
     fail_stop_together(EXIT_SCENE,
-        "what the scene of '%s' makes is not what the frame was made of: a file that it reads, or this program, has changed since", s->from->path);
+        "what the scene of '%s' makes is not what the frame was made of: a file that it reads, or "
+        "this program, has changed since",
+        s->from->path);
 }

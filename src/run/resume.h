@@ -1,8 +1,10 @@
-/* Going on with a run: the newest whole frame of a folder of results, its scene, and what the run as a whole counts.
+/* Going on with a run: the newest whole frame of a folder of results, its scene, and what the run
+ * as a whole counts.
  *
- * A frame has all that the next step depends on, in the run's own bits, and nothing of ranks and owners. The scene is the frame's own: its resolved
- * text, whose paths are absolute; what may be changed are keys that the state does not depend on. What the scene reads from files is read again, and
- * compared by a checksum. */
+ * A frame has all that the next step depends on, in the run's own bits, and nothing of ranks and
+ * owners. The scene is the frame's own: its resolved text, whose paths are absolute; what may be
+ * changed are keys that the state does not depend on. What the scene reads from files is read
+ * again, and compared by a checksum. */
 #ifndef DEMOCLES_RESUME_H
 #define DEMOCLES_RESUME_H
 
@@ -21,11 +23,13 @@ struct resume {
     struct scene *before;     /* as the frame has it, without changes */
 };
 
-/* Finds and opens the newest frame of `dir` that is whole; warns of each newer one that is not, and says what is wrong with it. Where there is none
- * all stop with EXIT_SCENE. Collective. */
+/* Finds and opens the newest frame of `dir` that is whole; warns of each newer one that is not, and
+ * says what is wrong with it. Where there is none all stop with EXIT_SCENE. Collective. */
 struct resume *resume_open(const struct comm *comm, struct log *log, const char *dir);
-/* The scene to go on with: the frame's with `set` applied. A key that cannot change, or a mistake: all stop with EXIT_SCENE. Collective. */
-struct scene *resume_scene(const struct comm *comm, struct resume *resume, const char *const *set, int n_set);
+/* The scene to go on with: the frame's with `set` applied. A key that cannot change, or a mistake:
+ * all stop with EXIT_SCENE. Collective. */
+struct scene *resume_scene(
+    const struct comm *comm, struct resume *resume, const char *const *set, int n_set);
 /* Once all is read. */
 void resume_close(struct resume *resume);
 void resume_free(struct resume *resume); /* NULL is fine */
@@ -34,7 +38,8 @@ void resume_free(struct resume *resume); /* NULL is fine */
 enum { RESUME_SCALARS = 8 };
 void resume_note(const struct sim *s, struct frame_scalar scalar[RESUME_SCALARS]);
 void resume_recall(struct sim *s);
-/* After the plan: what has been made of the scene is what the frame was made of, or all stop with EXIT_SCENE. Collective. */
+/* After the plan: what has been made of the scene is what the frame was made of, or all stop with
+ * EXIT_SCENE. Collective. */
 void resume_check_inputs(const struct sim *s);
 
 #endif

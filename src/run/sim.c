@@ -17,9 +17,11 @@ enum { LIMIT_EVERY = 500 };
 static void print_memory(struct sim *s)
 {
     struct memory_table table = s->dev->memory;
-    double all = (double)s->dev->counters.now_bytes, rest = all, n = fmax((double)s->ops->n_element(s) / s->comm->n_rank, 1);
+    double all = (double)s->dev->counters.now_bytes, rest = all,
+           n = fmax((double)s->ops->n_element(s) / s->comm->n_rank, 1);
     memory_table_sort(&table);
-    log_print(s->log, "device memory on rank 0: %.1f MiB, %.0f bytes per element", all / 1048576, all / n);
+    log_print(s->log, "device memory on rank 0: %.1f MiB, %.0f bytes per element", all / 1048576,
+        all / n);
     log_print(s->log, "    %-24s %12s %18s", "array", "KiB", "bytes per element");
     for (int i = 0; i < table.n && (double)table.row[i].bytes > 0.02 * all; i++) {
         double bytes = (double)table.row[i].bytes;
@@ -29,7 +31,8 @@ static void print_memory(struct sim *s)
     log_print(s->log, "    %-24s %12.1f %18.1f", "all others", rest / 1024, rest / n);
 }
 
-/* Where device and host compute on the same cores, the host sleeps while it waits. After the device has been opened and has its threads. */
+/* Where device and host compute on the same cores, the host sleeps while it waits. After the device
+ * has been opened and has its threads. */
 static void share_cores(struct sim *s)
 {
     if (!(s->dev->type & CL_DEVICE_TYPE_CPU) || s->comm->n_rank == 1) return;
@@ -40,12 +43,15 @@ static void share_cores(struct sim *s)
 static void count_steps(struct sim *s)
 {
     if (!(s->scene->time.end / s->dt <= SCENE_STEPS_MOST))
-        fail_stop_together(EXIT_SCENE, "%s: time.step: auto takes %.3g s, too many steps until time.end; give a value", s->scene->path, s->dt);
+        fail_stop_together(EXIT_SCENE,
+            "%s: time.step: auto takes %.3g s, too many steps until time.end; give a value",
+            s->scene->path, s->dt);
     s->n_step = (int64_t)ceil(s->scene->time.end / s->dt * (1 - 1e-12));
     if (s->options->n_step >= 0 && s->options->n_step < s->n_step) s->n_step = s->options->n_step;
     if (s->from && s->from->step > s->n_step)
-        fail_stop_together(s->n_step == s->options->n_step ? EXIT_USAGE : EXIT_SCENE, "'%s' is of step %lld, the run is to end with step %lld",
-            s->from->path, (long long)s->from->step, (long long)s->n_step);
+        fail_stop_together(s->n_step == s->options->n_step ? EXIT_USAGE : EXIT_SCENE,
+            "'%s' is of step %lld, the run is to end with step %lld", s->from->path,
+            (long long)s->from->step, (long long)s->n_step);
 }
 
 /* At the start of a run; one that goes on has looked at its limit already. */
@@ -58,11 +64,13 @@ static void begin(struct sim *s)
     resume_close(s->options->from);
     s->begun_at = s->step;
     s->observed = true;
-    log_print(s->log, "goes on from step %lld, t = %.9g s, of '%s'", (long long)s->step, (double)s->step * s->dt, s->from->path);
+    log_print(s->log, "goes on from step %lld, t = %.9g s, of '%s'", (long long)s->step,
+        (double)s->step * s->dt, s->from->path);
     if (s->step == s->n_step || s->rest.reached) log_print(s->log, "nothing is left to do");
 }
 
-struct sim *sim_create(struct scene *scene, struct comm *comm, struct log *log, const struct step_ops *ops, const struct sim_options *options)
+struct sim *sim_create(struct scene *scene, struct comm *comm, struct log *log,
+    const struct step_ops *ops, const struct sim_options *options)
 {
     struct sim *s = fail_alloc(sizeof *s);
     s->options = options;
@@ -79,32 +87,39 @@ struct sim *sim_create(struct scene *scene, struct comm *comm, struct log *log, 
     s->ops->plan(s);
     if (s->from) resume_check_inputs(s);
     count_steps(s);
-    s->dev = device_open(comm, options->device, scene->precision != PRECISION_SINGLE, options->profile || options->trace);
+    s->dev = device_open(comm, options->device, scene->precision != PRECISION_SINGLE,
+        options->profile || options->trace);
     s->dev->profile = options->profile; /* a trace wants the queues' times alone */
     share_cores(s);
     s->output = output_create(s);
     s->dev->dump_dir = options->dir;
     log_print(log, "%s", scene->title ? scene->title : scene->name);
-    log_print(log, "%d rank%s on %s (%s)", comm->n_rank, comm->n_rank > 1 ? "s" : "", s->dev->name, s->dev->platform_version);
+    log_print(log, "%d rank%s on %s (%s)", comm->n_rank, comm->n_rank > 1 ? "s" : "", s->dev->name,
+        s->dev->platform_version);
     s->ops->setup(s);
     begin(s);
-    log_print(log, "time step %.4g s (%.2g of the limit %.4g s of the present contacts), %lld steps", s->dt, s->dt / s->dt_limit, s->dt_limit,
-        (long long)s->n_step);
+    log_print(log,
+        "time step %.4g s (%.2g of the limit %.4g s of the present contacts), %lld steps", s->dt,
+        s->dt / s->dt_limit, s->dt_limit, (long long)s->n_step);
     s->ops->warn(s);
     print_memory(s);
-    if (options->trace) s->trace = trace_create(comm, s->dev, options->dir, options->trace_from, options->trace_steps, s->n_step);
+    if (options->trace)
+        s->trace = trace_create(
+            comm, s->dev, options->dir, options->trace_from, options->trace_steps, s->n_step);
     timer_end(&s->timers, TIMER_SETUP);
     return s;
 }
 
 static void progress(struct sim *s, bool end)
 {
-    struct log_progress p = {s->step, s->n_step, (double)s->step * s->dt, (double)s->n_step * s->dt, s->ops->n_element(s)};
+    struct log_progress p = {s->step, s->n_step, (double)s->step * s->dt, (double)s->n_step * s->dt,
+        s->ops->n_element(s)};
     if (end) log_progress_end(s->log, &p);
     else log_progress(s->log, &p);
 }
 
-/* Lists, lost elements and requests, as agreed beside the step before. Returns whether this step is to be the last. */
+/* Lists, lost elements and requests, as agreed beside the step before. Returns whether this step is
+ * to be the last. */
 static bool look_around(struct sim *s)
 {
     trace_lap(s->dev->trace, NULL);
@@ -114,7 +129,8 @@ static bool look_around(struct sim *s)
     timer_end(&s->timers, TIMER_WAIT);
     timer_end(&s->timers, TIMER_EXCHANGE);
     trace_lap(s->dev->trace, "vote");
-    if (agreed & WATCH_LOST) output_stop_numerics(s, "positions or velocities are not numbers any more");
+    if (agreed & WATCH_LOST)
+        output_stop_numerics(s, "positions or velocities are not numbers any more");
     if (agreed & WATCH_STALE || s->ops->stale(s)) {
         timer_begin(&s->timers, TIMER_REGROUP);
         s->ops->regroup(s);
@@ -125,7 +141,8 @@ static bool look_around(struct sim *s)
     return (agreed & WATCH_STOP) != 0;
 }
 
-/* Adds what a plain step has moved and allocated to the account that shows that it moves ghosts and flags alone, and allocates nothing. */
+/* Adds what a plain step has moved and allocated to the account that shows that it moves ghosts and
+ * flags alone, and allocates nothing. */
 static void count_plain(struct sim *s, const struct device_counters *before)
 {
     const struct device_counters *now = &s->dev->counters;
@@ -150,14 +167,19 @@ static void trace(struct sim *s, int64_t step)
 /* Returns the exit code. Who asks for rest and gets none by the scene's end has no result. */
 static int close_run(struct sim *s, bool stopped)
 {
-    bool restless = s->rest.next > 0 && !s->rest.reached && !stopped && (double)s->step * s->dt >= s->scene->time.end * (1 - 1e-12);
+    bool restless = s->rest.next > 0 && !s->rest.reached && !stopped &&
+                    (double)s->step * s->dt >= s->scene->time.end * (1 - 1e-12);
     int code = stopped ? EXIT_STOPPED : restless ? EXIT_NUMERICS : EXIT_DONE;
     if (stopped)
-        log_print(s->log, "stopped on request at step %lld; a frame was written, `democles resume %s` goes on", (long long)s->step, s->options->dir);
+        log_print(s->log,
+            "stopped on request at step %lld; a frame was written, `democles resume %s` goes on",
+            (long long)s->step, s->options->dir);
     if (s->rest.reached) log_print(s->log, "at rest after step %lld", (long long)s->step);
     output_close(s, code);
     if (restless)
-        fail_stop_together(EXIT_NUMERICS, "not at rest by time.end, %g s: %.3g of the largest force was left at the last look, relax.tolerance is %g",
+        fail_stop_together(EXIT_NUMERICS,
+            "not at rest by time.end, %g s: %.3g of the largest force was left at the last look, "
+            "relax.tolerance is %g",
             s->scene->time.end, s->rest.left, s->scene->lattice.tolerance);
     return code;
 }
@@ -168,7 +190,8 @@ int sim_run(struct sim *s)
     signals_keep();
     signals_pass();
     double *total = s->timers.total;
-    total[TIMER_EXCHANGE] = total[TIMER_WAIT] = total[TIMER_REGROUP] = 0; /* the set-up's belong to TIMER_SETUP */
+    /* the set-up's belong to TIMER_SETUP */
+    total[TIMER_EXCHANGE] = total[TIMER_WAIT] = total[TIMER_REGROUP] = 0;
     struct step_counts counts;
     s->ops->count(s, &counts);
     s->sent_before = counts.sent;
@@ -184,7 +207,8 @@ int sim_run(struct sim *s)
         stop = look_around(s);
         bool limit_due = s->step - s->limit_at >= LIMIT_EVERY;
         bool rest_due = s->step == s->rest.next;
-        s->observed = output_due(s, s->step) || s->step == s->n_step || stop || limit_due || rest_due;
+        s->observed =
+            output_due(s, s->step) || s->step == s->n_step || stop || limit_due || rest_due;
         s->ops->advance(s, s->observed);
         s->element_steps += (double)s->ops->n_element(s);
         if (plain && !s->observed && s->n_rebuild == n_rebuild) count_plain(s, &before);
@@ -209,7 +233,8 @@ void sim_require_double(const struct sim *s)
 {
     if (s->dev->fp64) return;
     fail_stop_together(EXIT_DEVICE,
-        "%s: a measure of energy needs double precision on every rank, and a device here does not have it (`democles devices` shows which); take "
+        "%s: a measure of energy needs double precision on every rank, and a device here does not "
+        "have it (`democles devices` shows which); take "
         "another device, or leave the measure out",
         s->scene->path);
 }

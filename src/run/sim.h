@@ -13,8 +13,9 @@
 
 /* From the command line. */
 struct sim_options {
-    const char *dir;                 /* results */
-    bool force, quiet, profile;      /* profile: device time of every kernel into run.json, at a small price */
+    const char *dir; /* results */
+    /* profile: device time of every kernel into run.json, at a small price */
+    bool force, quiet, profile;
     bool trace;                      /* a timeline: trace.h */
     int64_t trace_from, trace_steps; /* -1: as trace_create wants; how many */
     const char *device;              /* NULL: best */
@@ -33,7 +34,8 @@ struct sim {
     int64_t n_first; /* elements at the start, of all ranks */
     const struct step_ops *ops;
     const struct resume *from; /* NULL: from the start */
-    int64_t inputs;            /* checksum of elements and walls, or cells and loads, as the scene makes them */
+    /* checksum of elements and walls, or cells and loads, as the scene makes them */
+    int64_t inputs;
 
     /* What a run of each method has besides; the other one is NULL. */
     struct particle_run *particle; /* particle/particle.h */
@@ -45,7 +47,8 @@ struct sim {
     bool observed;        /* the state on the device is that of a full step */
     double dt, dt_limit;  /* [s]; rigorous limit at the last build */
     struct {
-        int64_t next;   /* step of the next look whether the elements are at rest; 0: the scene does not ask */
+        /* step of the next look whether the elements are at rest; 0: the scene does not ask */
+        int64_t next;
         bool reached;   /* the run ends then */
         double left;    /* share of the largest force [1], at the last look; NaN before the first */
         double damping; /* of mass, set by the last look [1/s] */
@@ -58,16 +61,18 @@ struct sim {
     /* account of the run */
     int64_t n_rebuild, n_removed;
     struct balance *balance;
-    double element_steps;         /* elements times steps so far */
-    struct device_counters plain; /* what the plain steps added: those without regroup, observation or the step after one */
+    double element_steps; /* elements times steps so far */
+    /* what the plain steps added: those without regroup, observation or the step after one */
+    struct device_counters plain;
     int64_t n_plain;
     struct halo_traffic sent_before; /* by this rank before the first step */
     double started;                  /* timer_now at the start */
 };
 
-/* Reads nothing: the scene is there. ops: of the scene's method. Opens the device, builds kernels, makes elements, lists and output. Collective;
- * errors stop all ranks. */
-struct sim *sim_create(struct scene *scene, struct comm *comm, struct log *log, const struct step_ops *ops, const struct sim_options *options);
+/* Reads nothing: the scene is there. ops: of the scene's method. Opens the device, builds kernels,
+ * makes elements, lists and output. Collective; errors stop all ranks. */
+struct sim *sim_create(struct scene *scene, struct comm *comm, struct log *log,
+    const struct step_ops *ops, const struct sim_options *options);
 /* A measure of energy on a device without double precision: message, exit code 4. Collective. */
 void sim_require_double(const struct sim *s);
 /* Runs to the end or to a stop; returns the exit code. Collective. */

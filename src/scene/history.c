@@ -44,13 +44,18 @@ double history_at(const struct history *h, double t)
 
 static double table_slope(const struct history *h, int k)
 {
-    return k <= 0 || k >= h->n_point ? 0 : (h->point[k][1] - h->point[k - 1][1]) / (h->point[k][0] - h->point[k - 1][0]);
+    return k <= 0 || k >= h->n_point
+               ? 0
+               : (h->point[k][1] - h->point[k - 1][1]) / (h->point[k][0] - h->point[k - 1][0]);
 }
 
 double history_rate(const struct history *h, double t)
 {
-    if (h->kind == HISTORY_RAMP) return (t >= 0 && t < h->ramp ? 0.5 / h->ramp : 0) + (t > 0 && t <= h->ramp ? 0.5 / h->ramp : 0);
-    if (h->kind == HISTORY_SINE) return two_pi * h->frequency * cos(two_pi * h->frequency * t + h->phase);
+    if (h->kind == HISTORY_RAMP)
+        return (t >= 0 && t < h->ramp ? 0.5 / h->ramp : 0) +
+               (t > 0 && t <= h->ramp ? 0.5 / h->ramp : 0);
+    if (h->kind == HISTORY_SINE)
+        return two_pi * h->frequency * cos(two_pi * h->frequency * t + h->phase);
     if (h->kind != HISTORY_TABLE) return 0;
     int k = point_after(h, t);
     bool is_corner = k > 0 && !(h->point[k - 1][0] < t);
@@ -81,7 +86,8 @@ double history_mean(const struct history *h, double from, double to)
     if (h->kind == HISTORY_RAMP || h->kind == HISTORY_TABLE) return mean_of_pieces(h, low, high);
     double half = 0.5 * two_pi * h->frequency * (high - low);
     if (h->kind == HISTORY_CONSTANT || !(half > 0)) return history_at(h, low);
-    return sin(two_pi * h->frequency * (low + 0.5 * (high - low)) + h->phase) * (sin(half) / half); /* no difference of cosines: nothing cancels */
+    /* no difference of cosines: nothing cancels */
+    return sin(two_pi * h->frequency * (low + 0.5 * (high - low)) + h->phase) * (sin(half) / half);
 }
 
 /* One line "t, f" into point; NULL, or what is wrong. */
@@ -91,7 +97,8 @@ static const char *parse(const char *line, double point[2])
     for (int k = 0; k < 2; k++) {
         char *end;
         point[k] = strtod(at, &end);
-        if (end == at || !isfinite(point[k])) return k == 0 ? "the time is not a number" : "the factor is not a number";
+        if (end == at || !isfinite(point[k]))
+            return k == 0 ? "the time is not a number" : "the factor is not a number";
         at = end + strspn(end, " \t");
         if (k == 0 && *at != ',') return "expected time, factor";
         at += k == 0;
@@ -111,7 +118,8 @@ static char *read_lines(struct history *table, const char *name, FILE *file)
         bool is_header = !has_line && wrong && !strpbrk(line, "0123456789");
         has_line = true;
         if (is_header) continue;
-        if (!wrong && table->n_point > 0 && !(point[0] > table->point[table->n_point - 1][0])) wrong = "times must ascend";
+        if (!wrong && table->n_point > 0 && !(point[0] > table->point[table->n_point - 1][0]))
+            wrong = "times must ascend";
         if (wrong) {
             problem = fail_format("%s:%d: %s", name, number, wrong);
             break;

@@ -15,8 +15,9 @@ double history_rate(const struct history *history, double t);
 /* Mean over [from, to], or [to, from]; the value where both are one. */
 double history_mean(const struct history *history, double from, double to);
 
-/* Reads the points of a table from a CSV file: a line per point, time in s and factor; a first line that is no number is a header. Returns NULL, or
- * what is wrong with the file, owned by the caller; table->point is the caller's in both cases. */
+/* Reads the points of a table from a CSV file: a line per point, time in s and factor; a first line
+ * that is no number is a header. Returns NULL, or what is wrong with the file, owned by the caller;
+ * table->point is the caller's in both cases. */
 char *history_read(struct history *table, const char *file);
 
 #endif

@@ -1,8 +1,9 @@
 /* The scene: everything a user asked for, in SI units, checked and complete with defaults.
  *
- * A scene is read once, by every rank alike, and is constant afterwards. It knows no device, no MPI and no element:
- * generate.c turns it into elements and walls, features.c into the kernels that it needs.
- * One typed table of keys (scene_keys.c) drives the parser, its errors, the defaults, `explain` and `check --resolved`. */
+ * A scene is read once, by every rank alike, and is constant afterwards. It knows no device, no MPI
+ * and no element: generate.c turns it into elements and walls, features.c into the kernels that it
+ * needs. One typed table of keys (scene_keys.c) drives the parser, its errors, the defaults,
+ * `explain` and `check --resolved`. */
 #ifndef DEMOCLES_SCENE_H
 #define DEMOCLES_SCENE_H
 
@@ -10,10 +11,12 @@
 #include <stddef.h>
 
 enum method { METHOD_PARTICLES, METHOD_LATTICE };
-enum scheme { SCHEME_LEAPFROG, SCHEME_RK4, SCHEME_RKN4, SCHEME_PEFRL, SCHEME_VEFRL }; /* in the order of enum lattice_scheme */
+/* in the order of enum lattice_scheme */
+enum scheme { SCHEME_LEAPFROG, SCHEME_RK4, SCHEME_RKN4, SCHEME_PEFRL, SCHEME_VEFRL };
 enum precision { PRECISION_DEFAULT, PRECISION_DOUBLE, PRECISION_MIXED, PRECISION_SINGLE };
 
-/* More steps than this are no run but a mistake; all of them are whole numbers in double precision. */
+/* More steps than this are no run but a mistake; all of them are whole numbers in double
+ * precision. */
 #define SCENE_STEPS_MOST 1e15
 
 struct scene_time {
@@ -26,28 +29,32 @@ struct scene_time {
 
 enum damping_by { DAMPING_MASS, DAMPING_LINK };
 enum plane { PLANE_STRESS, PLANE_STRAIN };
-enum criterion { CRITERION_SUM, CRITERION_LARGEST, CRITERION_STRESS }; /* BREAK_* of kernels/lattice/law_break.h */
+/* BREAK_* of kernels/lattice/law_break.h */
+enum criterion { CRITERION_SUM, CRITERION_LARGEST, CRITERION_STRESS };
 struct material {
     char *name;
     double density; /* [kg/m3] */
     double young;   /* [Pa]; 0: not given */
     double poisson; /* [1] */
     /* lattice only */
-    double mass_damping;              /* alpha [1/s]: a = -alpha v; follows from `ratio` where that is given */
+    /* alpha [1/s]: a = -alpha v; follows from `ratio` where that is given */
+    double mass_damping;
     double link_damping;              /* eta [s]: links pull with k (gap + eta rate); likewise */
     double damping_ratio, damping_at; /* zeta [1] at a frequency [1/s]; ratio 0: not given */
     enum damping_by damping_by;       /* what makes up that ratio */
     bool has_strength;
-    double tension, shear; /* what the face of a cell bears [Pa]; infinity: anything; tension 0: from `energy` */
-    double energy;         /* of fracture [J/m2] */
-    enum plane plane;      /* state that `energy` is turned into a tension for */
+    /* what the face of a cell bears [Pa]; infinity: anything; tension 0: from `energy` */
+    double tension, shear;
+    double energy;    /* of fracture [J/m2] */
+    enum plane plane; /* state that `energy` is turned into a tension for */
     enum criterion criterion;
 };
 
 enum normal_law { NORMAL_LINEAR, NORMAL_HERTZ };
 enum rolling_model { ROLLING_NONE, ROLLING_CDT, ROLLING_EPSD };
 
-/* Contact of two materials, unordered pair. A part that the scene leaves out has its `has_` false and costs nothing. */
+/* Contact of two materials, unordered pair. A part that the scene leaves out has its `has_` false
+ * and costs nothing. */
 struct contact {
     int between[2]; /* materials, indices into scene.material */
     enum normal_law normal_law;
@@ -56,7 +63,8 @@ struct contact {
     double restitution;   /* e [1] as given, else negative */
     bool attraction;      /* keep the attractive tail of the dashpot (default true) */
     bool has_tangential;
-    double stiffness_ratio;    /* k_t/k_n [1], linear law; Hertz takes Mindlin's where this is negative (not given) */
+    /* k_t/k_n [1], linear law; Hertz takes Mindlin's where this is negative (not given) */
+    double stiffness_ratio;
     double tangential_damping; /* z_t [1] */
     double friction;           /* mu [1] */
     enum rolling_model rolling;
@@ -84,7 +92,8 @@ struct element_group {
     char *file;           /* CSV x,y,z,radius[,vx,vy,vz,wx,wy,wz] */
     struct region region; /* fill */
     long count;           /* number of elements; 0: as many as fit */
-    double jitter;        /* [1]: lattice of spacing (1+jitter) d, each element displaced by up to jitter d/2 per axis */
+    /* [1]: lattice of spacing (1+jitter) d, each element displaced by up to jitter d/2 per axis */
+    double jitter;
     unsigned long seed;
     double velocity[3];         /* [m/s] */
     double angular_velocity[3]; /* [rad/s] */
@@ -116,7 +125,14 @@ struct history {
     int n_point;
 };
 
-enum boundary_kind { BOUNDARY_FIX, BOUNDARY_FORCE, BOUNDARY_PRESSURE, BOUNDARY_ACCELERATION, BOUNDARY_VELOCITY, BOUNDARY_ANGULAR_VELOCITY };
+enum boundary_kind {
+    BOUNDARY_FIX,
+    BOUNDARY_FORCE,
+    BOUNDARY_PRESSURE,
+    BOUNDARY_ACCELERATION,
+    BOUNDARY_VELOCITY,
+    BOUNDARY_ANGULAR_VELOCITY
+};
 struct boundary {
     struct region where; /* REGION_ALL: anywhere */
     int body;            /* only cells of this body; -1: of any */
@@ -145,8 +161,9 @@ struct wall {
     char *name;
     int material;
     enum surface_kind kind;
-    double point[3], normal[3];    /* plane; rectangle: center, normal (a unit vector) */
-    double size[2];                /* rectangle [m], along its two in-plane axes (see walls_axes in src/shape/walls.h) */
+    double point[3], normal[3]; /* plane; rectangle: center, normal (a unit vector) */
+    /* rectangle [m], along its two in-plane axes (see walls_axes in src/shape/walls.h) */
+    double size[2];
     double min[3], max[3];         /* box: elements stay inside */
     double from[3], to[3], radius; /* cylinder */
     bool inside;                   /* cylinder: elements stay inside it */
@@ -164,24 +181,36 @@ struct wall {
 
 struct domain {
     bool periodic[3];
-    bool has_box;          /* min, max were given; else the bounding box of walls and elements (grown by a margin) */
+    /* min, max were given; else the bounding box of walls and elements (grown by a margin) */
+    bool has_box;
     double min[3], max[3]; /* [m]; needed for periodic directions */
     bool remove_outside;
 };
 
 enum partition_method { PARTITION_GEOMETRIC, PARTITION_INTERACTIONS, PARTITION_GRAPH };
 enum partition_weights { WEIGHTS_INTERACTIONS, WEIGHTS_MEASURED };
-enum partition_boundary { CUT_PAIRS_BOTH, CUT_PAIRS_ASSIGNED }; /* pairs of two ranks: computed on both, or on one (kernels/particle/assign.cl) */
+/* pairs of two ranks: computed on both, or on one (kernels/particle/assign.cl) */
+enum partition_boundary { CUT_PAIRS_BOTH, CUT_PAIRS_ASSIGNED };
 #define PARTITION_AUTO (-1)
 struct scene_partition {
     enum partition_method method;
-    long every;       /* steps between re-cuts; 0: never; PARTITION_AUTO: when it pays */
-    double threshold; /* imbalance U above which a due re-cut is made, and below which weights are not raised any more */
+    long every; /* steps between re-cuts; 0: never; PARTITION_AUTO: when it pays */
+    /* imbalance U above which a due re-cut is made, and below which weights are not raised any
+     * more */
+    double threshold;
     enum partition_weights weights;
     enum partition_boundary boundary;
 };
 
-enum measure_kind { MEASURE_COUNT, MEASURE_ENERGY, MEASURE_MOMENTUM, MEASURE_WALL_FORCE, MEASURE_PROBE, MEASURE_STRESS_MAX, MEASURE_BROKEN };
+enum measure_kind {
+    MEASURE_COUNT,
+    MEASURE_ENERGY,
+    MEASURE_MOMENTUM,
+    MEASURE_WALL_FORCE,
+    MEASURE_PROBE,
+    MEASURE_STRESS_MAX,
+    MEASURE_BROKEN
+};
 struct measure {
     char *name;
     double every; /* [s] */
@@ -229,7 +258,8 @@ struct scene {
     struct output output;
     struct measure *measure;
     int n_measure;
-    char *resolved;     /* the scene with all defaults, as YAML text that reads back to the same scene */
+    /* the scene with all defaults, as YAML text that reads back to the same scene */
+    char *resolved;
     unsigned long hash; /* of the resolved text */
 };
 
@@ -239,16 +269,22 @@ struct scene_errors {
     int n;
 };
 
-/* Reads and checks `path`, with `set` (n_set strings KEY=VALUE, KEY as dotted path: time.end=1s, walls[1].motion.remove_at=0.2s) applied.
- * Returns NULL when `errors` is not empty. Not collective: every rank reads; each gets the same answer. */
-struct scene *scene_read(const char *path, const char *const *set, int n_set, struct scene_errors *errors);
-/* The same of a text [n]; `path` is what it is called, and its folder is what paths are relative to. */
-struct scene *scene_read_text(const char *path, const char *text, size_t n, const char *const *set, int n_set, struct scene_errors *errors);
+/* Reads and checks `path`, with `set` (n_set strings KEY=VALUE, KEY as dotted path: time.end=1s,
+ * walls[1].motion.remove_at=0.2s) applied. Returns NULL when `errors` is not empty. Not collective:
+ * every rank reads; each gets the same answer. */
+struct scene *scene_read(
+    const char *path, const char *const *set, int n_set, struct scene_errors *errors);
+/* The same of a text [n]; `path` is what it is called, and its folder is what paths are relative
+ * to. */
+struct scene *scene_read_text(const char *path, const char *text, size_t n, const char *const *set,
+    int n_set, struct scene_errors *errors);
 void scene_free(struct scene *scene);
-void scene_errors_add(struct scene_errors *errors, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void scene_errors_add(struct scene_errors *errors, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 void scene_errors_free(struct scene_errors *errors);
 
-/* The reference page of all keys, or of those below `key` ("contacts.normal"), to stdout. Returns false, and names the nearest, if there is none. */
+/* The reference page of all keys, or of those below `key` ("contacts.normal"), to stdout. Returns
+ * false, and names the nearest, if there is none. */
 bool scene_explain(const char *key);
 
 #endif

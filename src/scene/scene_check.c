@@ -1,5 +1,5 @@
-/* Rules of a scene that tie several keys together, and what is derived from several keys. Each rule looks only at what was read without
- * issue, so that one mistake gives one message. */
+/* Rules of a scene that tie several keys together, and what is derived from several keys. Each rule
+ * looks only at what was read without issue, so that one mistake gives one message. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,25 +15,30 @@ static bool is_given(const struct scene_reader *reader, const char *path)
 }
 
 /* min < max in every direction, or at least min <= max of a box that may be flat. */
-static void check_box(struct scene_reader *reader, char *path, const double min[3], const double max[3], bool may_be_flat)
+static void check_box(struct scene_reader *reader, char *path, const double min[3],
+    const double max[3], bool may_be_flat)
 {
     if (is_given(reader, path) && !scene_issue_is_below(reader, path))
         for (int k = 0; k < 3; k++)
             if (may_be_flat ? min[k] > max[k] : !(min[k] < max[k])) {
-                scene_issue_on(reader, path, "min must %s max in %c", may_be_flat ? "not be above" : "be below", "xyz"[k]);
+                scene_issue_on(reader, path, "min must %s max in %c",
+                    may_be_flat ? "not be above" : "be below", "xyz"[k]);
                 break;
             }
     free(path);
 }
 
-static void check_cylinder(struct scene_reader *reader, char *path, const double from[3], const double to[3])
+static void check_cylinder(
+    struct scene_reader *reader, char *path, const double from[3], const double to[3])
 {
-    if (is_given(reader, path) && !scene_issue_is_below(reader, path) && memcmp(from, to, 3 * sizeof *from) == 0)
+    if (is_given(reader, path) && !scene_issue_is_below(reader, path) &&
+        memcmp(from, to, 3 * sizeof *from) == 0)
         scene_issue_on(reader, path, "from and to are the same point");
     free(path);
 }
 
-void scene_check_region(struct scene_reader *reader, char *path, const struct region *region, bool may_be_flat)
+void scene_check_region(
+    struct scene_reader *reader, char *path, const struct region *region, bool may_be_flat)
 {
     check_box(reader, fail_format("%s.box", path), region->min, region->max, may_be_flat);
     check_cylinder(reader, fail_format("%s.cylinder", path), region->from, region->to);
@@ -42,7 +47,8 @@ void scene_check_region(struct scene_reader *reader, char *path, const struct re
 
 static void check_direction(struct scene_reader *reader, char *path, const double v[3])
 {
-    if (is_given(reader, path) && !scene_issue_is_below(reader, path) && v[0] == 0 && v[1] == 0 && v[2] == 0)
+    if (is_given(reader, path) && !scene_issue_is_below(reader, path) && v[0] == 0 && v[1] == 0 &&
+        v[2] == 0)
         scene_issue_on(reader, path, "a direction must not be zero");
     free(path);
 }
@@ -51,9 +57,11 @@ static void check_elements(struct scene_reader *reader)
 {
     for (int k = 0; k < reader->scene->n_group; k++) {
         const struct element_group *group = &reader->scene->group[k];
-        scene_check_region(reader, fail_format("elements[%d].fill.region", k), &group->region, false);
+        scene_check_region(
+            reader, fail_format("elements[%d].fill.region", k), &group->region, false);
         char *path = fail_format("elements[%d].shape", k);
-        if (is_given(reader, path) && !scene_issue_is_below(reader, path) && group->diameter[0] > group->diameter[1])
+        if (is_given(reader, path) && !scene_issue_is_below(reader, path) &&
+            group->diameter[0] > group->diameter[1])
             scene_issue_on(reader, path, "min must not be above max");
         free(path);
     }
@@ -67,9 +75,12 @@ static void check_walls(struct scene_reader *reader)
         check_direction(reader, fail_format("walls[%d].surface.rectangle.normal", k), wall->normal);
         check_box(reader, fail_format("walls[%d].surface.box", k), wall->min, wall->max, false);
         check_cylinder(reader, fail_format("walls[%d].surface.cylinder", k), wall->from, wall->to);
-        check_direction(reader, fail_format("walls[%d].motion.rotation.axis", k), wall->rotation_axis);
-        char *path = fail_format("walls[%d].motion", k), *remove = fail_format("%s.remove_at", path);
-        if (!scene_issue_is_below(reader, path) && wall->remove_at <= wall->appear_at) scene_issue_on(reader, remove, "must be after appear_at");
+        check_direction(
+            reader, fail_format("walls[%d].motion.rotation.axis", k), wall->rotation_axis);
+        char *path = fail_format("walls[%d].motion", k),
+             *remove = fail_format("%s.remove_at", path);
+        if (!scene_issue_is_below(reader, path) && wall->remove_at <= wall->appear_at)
+            scene_issue_on(reader, remove, "must be after appear_at");
         free(remove);
         free(path);
     }
@@ -87,7 +98,9 @@ static void check_hertz(struct scene_reader *reader, int k)
         static const char *const NEEDED_KEY[] = {"young", "poisson"};
         for (int n = 0; n < 2; n++) {
             char *path = fail_format("materials.%s.%s", scene->material[index].name, NEEDED_KEY[n]);
-            if (!is_given(reader, path)) scene_issue_on(reader, law, "hertz needs '%s' of material '%s'", NEEDED_KEY[n], scene->material[index].name);
+            if (!is_given(reader, path))
+                scene_issue_on(reader, law, "hertz needs '%s' of material '%s'", NEEDED_KEY[n],
+                    scene->material[index].name);
             free(path);
         }
     }
@@ -97,8 +110,10 @@ static void check_hertz(struct scene_reader *reader, int k)
 static void check_contact(struct scene_reader *reader, int k)
 {
     const struct contact *contact = &reader->scene->contact[k];
-    char *path = fail_format("contacts[%d]", k), *normal = fail_format("%s.normal", path), *tangential = fail_format("%s.tangential", path);
-    char *law = fail_format("%s.law", normal), *ratio = fail_format("%s.stiffness_ratio", tangential);
+    char *path = fail_format("contacts[%d]", k), *normal = fail_format("%s.normal", path),
+         *tangential = fail_format("%s.tangential", path);
+    char *law = fail_format("%s.law", normal),
+         *ratio = fail_format("%s.stiffness_ratio", tangential);
     bool both = contact->between[0] >= 0 && contact->between[1] >= 0;
     if (!is_given(reader, normal)) {
         static const char *const PART[] = {"tangential", "rolling", "binding"};
@@ -109,15 +124,16 @@ static void check_contact(struct scene_reader *reader, int k)
         }
     } else if (is_given(reader, law) && !scene_issue_is_below(reader, law)) {
         if (contact->normal_law == NORMAL_HERTZ && both) check_hertz(reader, k);
-        if (contact->normal_law == NORMAL_LINEAR && is_given(reader, tangential) && !is_given(reader, ratio) &&
-            !scene_issue_is_below(reader, tangential))
+        if (contact->normal_law == NORMAL_LINEAR && is_given(reader, tangential) &&
+            !is_given(reader, ratio) && !scene_issue_is_below(reader, tangential))
             scene_issue_on(reader, tangential, "missing key 'stiffness_ratio' (law: linear)");
     }
     for (int other = 0; other < k && both; other++) {
         const int *a = contact->between, *b = reader->scene->contact[other].between;
         if ((a[0] == b[0] && a[1] == b[1]) || (a[0] == b[1] && a[1] == b[0])) {
             char *between = fail_format("%s.between", path);
-            scene_issue_on(reader, between, "contacts[%d] is between these materials already", other);
+            scene_issue_on(
+                reader, between, "contacts[%d] is between these materials already", other);
             free(between);
             break;
         }
@@ -147,7 +163,8 @@ static bool is_doubtful(const struct scene_reader *reader, int k)
     return answer;
 }
 
-/* Whether elements of materials a and b can meet, or an element of one and a wall of the other. One element alone does not meet itself. */
+/* Whether elements of materials a and b can meet, or an element of one and a wall of the other. One
+ * element alone does not meet itself. */
 static bool can_meet(const struct scene_reader *reader, int a, int b)
 {
     const struct scene *scene = reader->scene;
@@ -173,14 +190,15 @@ static void check_contacts(struct scene_reader *reader)
     bool all_known = true;
     for (int k = 0; k < scene->n_contact; k++) {
         check_contact(reader, k);
-        all_known = all_known && scene->contact[k].between[0] >= 0 && scene->contact[k].between[1] >= 0;
+        all_known =
+            all_known && scene->contact[k].between[0] >= 0 && scene->contact[k].between[1] >= 0;
     }
     if (!all_known) return; /* the pair in question may be the one that is misspelt */
     for (int a = 0; a < scene->n_material; a++)
         for (int b = a; b < scene->n_material; b++)
             if (can_meet(reader, a, b) && !has_contact(scene, a, b))
-                scene_issue_on(
-                    reader, "contacts", "no entry between '%s' and '%s', which can meet", scene->material[a].name, scene->material[b].name);
+                scene_issue_on(reader, "contacts", "no entry between '%s' and '%s', which can meet",
+                    scene->material[a].name, scene->material[b].name);
 }
 
 static void check_domain(struct scene_reader *reader)
@@ -193,15 +211,18 @@ static void check_domain(struct scene_reader *reader)
 
 static void check_scheme(struct scene_reader *reader)
 {
-    if (reader->scene->time.scheme != SCHEME_LEAPFROG) scene_issue_on(reader, "time.scheme", "particles take leapfrog alone");
+    if (reader->scene->time.scheme != SCHEME_LEAPFROG)
+        scene_issue_on(reader, "time.scheme", "particles take leapfrog alone");
 }
 
 static void check_time(struct scene_reader *reader)
 {
     const struct scene_time *time = &reader->scene->time;
-    if (!is_given(reader, "time.step") || scene_issue_is_below(reader, "time") || !(time->step > 0)) return;
+    if (!is_given(reader, "time.step") || scene_issue_is_below(reader, "time") || !(time->step > 0))
+        return;
     if (!(time->end / time->step <= SCENE_STEPS_MOST))
-        scene_issue_on(reader, "time.step", "%.3g steps until time.end are too many, at most %.0g", time->end / time->step, SCENE_STEPS_MOST);
+        scene_issue_on(reader, "time.step", "%.3g steps until time.end are too many, at most %.0g",
+            time->end / time->step, SCENE_STEPS_MOST);
 }
 
 void scene_check(struct scene_reader *reader)
@@ -229,12 +250,16 @@ void scene_check_derive(struct scene *scene)
     scene_check_derive_damping(scene);
     for (int k = 0; k < scene->n_contact; k++) {
         struct contact *contact = &scene->contact[k];
-        if (contact->restitution > 0) contact->damping_ratio = restitution_damping(contact->restitution, contact->attraction);
+        if (contact->restitution > 0)
+            contact->damping_ratio = restitution_damping(contact->restitution, contact->attraction);
     }
     for (int k = 0; k < scene->n_wall; k++) {
         struct wall *wall = &scene->wall[k];
         if (wall->kind == SURFACE_PLANE || wall->kind == SURFACE_RECTANGLE) normalise(wall->normal);
-        if (wall->rotation_axis[0] == 0 && wall->rotation_axis[1] == 0 && wall->rotation_axis[2] == 0) wall->rotation_axis[2] = 1; /* no rotation */
+        /* no rotation */
+        if (wall->rotation_axis[0] == 0 && wall->rotation_axis[1] == 0 &&
+            wall->rotation_axis[2] == 0)
+            wall->rotation_axis[2] = 1;
         normalise(wall->rotation_axis);
     }
 }

@@ -30,7 +30,8 @@ static const char *const TYPE[] = {
     [KEY_TABLE] = "list of pairs, file",
 };
 
-/* Steps past one segment of a path or pattern and what belongs to it: "contacts[0]." and "contacts[]." both leave "contacts". */
+/* Steps past one segment of a path or pattern and what belongs to it: "contacts[0]." and
+ * "contacts[]." both leave "contacts". */
 static size_t segment(const char **path)
 {
     const char *p = *path;
@@ -55,13 +56,18 @@ static bool is_below(const char *pattern, const char *key)
     return true;
 }
 
-/* "needed", "one of", the default, or "-"; with the method that has the key, and the condition under which it exists. */
+/* "needed", "one of", the default, or "-"; with the method that has the key, and the condition
+ * under which it exists. */
 static void default_text(const struct scene_key *key, char *text, size_t size)
 {
-    const char *what = key->fallback ? key->fallback : key->need == NEEDED ? "needed" : key->need == ONE_OF ? "one of these" : "-";
+    const char *what = key->fallback         ? key->fallback
+                       : key->need == NEEDED ? "needed"
+                       : key->need == ONE_OF ? "one of these"
+                                             : "-";
     if (strcmp(what, "''") == 0 || strcmp(what, "{}") == 0) what = "-";
     if (key->only || key->when)
-        snprintf(text, size, "%s (%s%s%s)", what, key->only ? key->only : "", key->only && key->when ? ", " : "", key->when ? key->when : "");
+        snprintf(text, size, "%s (%s%s%s)", what, key->only ? key->only : "",
+            key->only && key->when ? ", " : "", key->when ? key->when : "");
     else snprintf(text, size, "%s", what);
 }
 
@@ -76,7 +82,8 @@ static char *meaning(const struct scene_key *key)
         else if (*w != '|') snprintf(words + used, sizeof words - used, "%c", *w);
     }
     const char *limits = *range ? range + strlen("must be ") : "";
-    return *words || *range ? fail_format("%s [%s%s]", key->text, words, limits) : fail_strdup(key->text);
+    return *words || *range ? fail_format("%s [%s%s]", key->text, words, limits)
+                            : fail_strdup(key->text);
 }
 
 static void print_row(const struct scene_key *key, int path_width)
@@ -86,7 +93,8 @@ static void print_row(const struct scene_key *key, int path_width)
     if (key->type == KEY_VECTOR) snprintf(type, sizeof type, "%d numbers", key->width);
     default_text(key, value, sizeof value);
     char *text = meaning(key);
-    bool quantity = key->type == KEY_NUMBER || key->type == KEY_SPAN || key->type == KEY_VECTOR || key->type == KEY_TABLE;
+    bool quantity = key->type == KEY_NUMBER || key->type == KEY_SPAN || key->type == KEY_VECTOR ||
+                    key->type == KEY_TABLE;
     const char *unit = !quantity ? "" : key->unit == UNIT_NONE ? "1" : units_si(key->unit);
     printf("%-*s  %-20s  %-5s  %-22s  %s\n", path_width, key->path, type, unit, value, text);
     free(text);
@@ -127,8 +135,12 @@ bool scene_explain(const char *key)
     for (int k = 0; k < scene_keys_n; k++)
         if (!key || is_below(scene_keys[k].path, key)) print_row(&scene_keys[k], width);
     if (!key)
-        printf("\nA number may carry a unit, also a compound one: 5 mm, 1 kN/m, 210 GPa, 7.85 g/cm3, 30 deg, 10 rpm, 50 Hz. Without, it is in SI.\n"
-               "Files are relative to the scene. --set KEY=VALUE changes one key, --set KEY= takes it away:\n"
-               "    --set time.end=1s --set contacts[0].normal.stiffness=2e3 --set walls.gate.motion.remove_at=0.2\n");
+        printf(
+            "\nA number may carry a unit, also a compound one: 5 mm, 1 kN/m, 210 GPa, 7.85 g/cm3, "
+            "30 deg, 10 rpm, 50 Hz. Without, it is in SI.\n"
+            "Files are relative to the scene. --set KEY=VALUE changes one key, --set KEY= takes "
+            "it away:\n"
+            "    --set time.end=1s --set contacts[0].normal.stiffness=2e3 --set "
+            "walls.gate.motion.remove_at=0.2\n");
     return true;
 }

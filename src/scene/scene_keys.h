@@ -1,9 +1,11 @@
-/* The one table of the scene's keys. Parser, errors, defaults, `explain` and `check --resolved` all follow it: a new key is a new row.
+/* The one table of the scene's keys. Parser, errors, defaults, `explain` and `check --resolved` all
+ * follow it: a new key is a new row.
  *
- * Paths are patterns: "contacts[].normal.law" is a key of every entry of a list, "materials.NAME.density" of every named entry. An entry of
- * a list or a named entry is a record: a struct of its own; the keys below it are stored at offsets into that struct, all others into
- * struct scene. A key that means one thing to particles and another to the lattice has a row for each. Rules that tie several keys together
- * beyond ONE_OF and `when` are in scene_check*.c. */
+ * Paths are patterns: "contacts[].normal.law" is a key of every entry of a list,
+ * "materials.NAME.density" of every named entry. An entry of a list or a named entry is a record: a
+ * struct of its own; the keys below it are stored at offsets into that struct, all others into
+ * struct scene. A key that means one thing to particles and another to the lattice has a row for
+ * each. Rules that tie several keys together beyond ONE_OF and `when` are in scene_check*.c. */
 #ifndef DEMOCLES_SCENE_KEYS_H
 #define DEMOCLES_SCENE_KEYS_H
 
@@ -62,19 +64,28 @@ struct scene_key {
     enum unit_kind unit;
     const char *fallback; /* default as YAML text; NULL: none */
     struct key_range range;
-    const char *words;    /* KEY_CHOICE, KEY_WORDS: "linear|hertz", in the order of the enum, an empty one cannot be chosen */
-    const char *special;  /* KEY_NUMBER, KEY_INTEGER, KEY_VECTOR, KEY_MAP: a word in place of a number, of the mapping ... */
+    /* KEY_CHOICE, KEY_WORDS: "linear|hertz", in the order of the enum, an empty one cannot be
+     * chosen */
+    const char *words;
+    /* KEY_NUMBER, KEY_INTEGER, KEY_VECTOR, KEY_MAP: a word in place of a number, of the mapping
+     * ... */
+    const char *special;
     double special_value; /* ... and what is stored for it */
     double absent;        /* number stored where the key is neither given nor has a default */
     double factor;        /* stored value = factor * given value; 0: 1 */
-    const char *only;     /* "particles", "lattice": the key, and what is below it, belongs to that method; NULL: to both */
-    const char *when;     /* "law: linear", "stl": allowed (and needed) only beside this sibling value, this sibling */
-    size_t at;            /* 1 + offset into the record; 0: not stored */
-    size_t count_at;      /* KEY_LIST, KEY_NAMED, KEY_WORDS, KEY_TABLE: 1 + offset of the number (int) */
-    size_t size;          /* KEY_LIST, KEY_NAMED: bytes of a record */
-    size_t label_at;      /* KEY_LIST: 1 + offset of the line (int), or 0; KEY_NAMED: of the name (char *) */
-    size_t column_at;     /* KEY_LIST: 1 + offset of the column (int), or 0 */
-    int width;            /* KEY_VECTOR */
+    /* "particles", "lattice": the key, and what is below it, belongs to that method; NULL: to
+     * both */
+    const char *only;
+    /* "law: linear", "stl": allowed (and needed) only beside this sibling value, this sibling */
+    const char *when;
+    size_t at; /* 1 + offset into the record; 0: not stored */
+    /* KEY_LIST, KEY_NAMED, KEY_WORDS, KEY_TABLE: 1 + offset of the number (int) */
+    size_t count_at;
+    size_t size; /* KEY_LIST, KEY_NAMED: bytes of a record */
+    /* KEY_LIST: 1 + offset of the line (int), or 0; KEY_NAMED: of the name (char *) */
+    size_t label_at;
+    size_t column_at; /* KEY_LIST: 1 + offset of the column (int), or 0 */
+    int width;        /* KEY_VECTOR */
     struct key_mark mark;
     const char *text; /* one sentence */
 };
@@ -86,7 +97,8 @@ extern const int scene_keys_n;
 const char *scene_key_name(const struct scene_key *key);
 /* Whether the key stands directly below the pattern ("" is the root, "contacts[]" an entry). */
 bool scene_key_is_child(const struct scene_key *key, const char *pattern);
-/* Whether it is stored in the record that `pattern` opens: below it at any depth, but not in a list further down. */
+/* Whether it is stored in the record that `pattern` opens: below it at any depth, but not in a list
+ * further down. */
 bool scene_key_is_in_record(const struct scene_key *key, const char *pattern);
 /* Whether scenes of that method have the key. */
 bool scene_key_belongs(const struct scene_key *key, enum method method);

@@ -36,10 +36,12 @@ int scene_path_follow(const struct scene_node *node, const struct scene_step *st
 {
     for (int k = 0; step->word && k < node->n; k++) {
         if (node->kind == NODE_MAPPING && same_text(node->key[k]->text, step)) return k;
-        const struct scene_node *name = node->kind == NODE_SEQUENCE ? scene_yaml_get(node->item[k], "name", NULL) : NULL;
+        const struct scene_node *name =
+            node->kind == NODE_SEQUENCE ? scene_yaml_get(node->item[k], "name", NULL) : NULL;
         if (name && name->kind == NODE_SCALAR && same_text(name->text, step)) return k;
     }
-    if (!step->word && node->kind == NODE_SEQUENCE && step->index < node->n) return (int)step->index;
+    if (!step->word && node->kind == NODE_SEQUENCE && step->index < node->n)
+        return (int)step->index;
     return -1;
 }
 

@@ -1,4 +1,5 @@
-/* Dotted paths into the node tree of a scene: "walls[1].motion.remove_at"; "walls.gate.motion" names an entry of a list by its key `name`. */
+/* Dotted paths into the node tree of a scene: "walls[1].motion.remove_at"; "walls.gate.motion"
+ * names an entry of a list by its key `name`. */
 #ifndef DEMOCLES_SCENE_PATH_H
 #define DEMOCLES_SCENE_PATH_H
 
@@ -14,7 +15,8 @@ struct scene_step {
     long index;
 };
 
-/* Takes the first step off *path. False at its end and where it is malformed: then **path is not '\0'. */
+/* Takes the first step off *path. False at its end and where it is malformed: then **path is not
+ * '\0'. */
 bool scene_path_step(const char **path, struct scene_step *step);
 
 /* The index in `node` of the item that the step leads to, or -1. */

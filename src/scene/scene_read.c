@@ -1,4 +1,5 @@
-/* Reads a scene: the file into a node tree, --set into the tree, the tree along the table of keys into struct scene, then the rules. */
+/* Reads a scene: the file into a node tree, --set into the tree, the tree along the table of keys
+ * into struct scene, then the rules. */
 #include <errno.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -38,13 +39,16 @@ static char *folder_of(const char *path)
     return folder;
 }
 
-/* Stem of the file; of its folder where the file is called scene.yaml, or resolved.yaml as in a folder of results. */
+/* Stem of the file; of its folder where the file is called scene.yaml, or resolved.yaml as in a
+ * folder of results. */
 static char *name_of(const char *path)
 {
     char *absolute = realpath(path, NULL);
     char *rest = absolute ? absolute : fail_strdup(path);
     char *slash = strrchr(rest, '/');
-    if (slash && (strcmp(slash + 1, "scene.yaml") == 0 || strcmp(slash + 1, "resolved.yaml") == 0) && slash > rest) {
+    if (slash &&
+        (strcmp(slash + 1, "scene.yaml") == 0 || strcmp(slash + 1, "resolved.yaml") == 0) &&
+        slash > rest) {
         *slash = '\0';
         slash = strrchr(rest, '/');
         char *name = fail_strdup(slash ? slash + 1 : rest);
@@ -68,7 +72,8 @@ static unsigned long hash_of(const char *text)
     return (unsigned long)hash;
 }
 
-struct scene *scene_read(const char *path, const char *const *set, int n_set, struct scene_errors *errors)
+struct scene *scene_read(
+    const char *path, const char *const *set, int n_set, struct scene_errors *errors)
 {
     size_t n;
     char *text = read_file(path, &n, errors);
@@ -77,7 +82,8 @@ struct scene *scene_read(const char *path, const char *const *set, int n_set, st
     return scene;
 }
 
-struct scene *scene_read_text(const char *path, const char *text, size_t n, const char *const *set, int n_set, struct scene_errors *errors)
+struct scene *scene_read_text(const char *path, const char *text, size_t n, const char *const *set,
+    int n_set, struct scene_errors *errors)
 {
     struct scene_yaml_error error;
     struct scene_reader reader = {.path = path, .set = set};

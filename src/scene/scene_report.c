@@ -17,14 +17,17 @@ void scene_report_errors(const struct comm *comm, struct scene_errors *errors)
     fail_leave(EXIT_SCENE);
 }
 
-struct scene *scene_report_read(const struct comm *comm, const char *path, const char *const *set, int n_set)
+struct scene *scene_report_read(
+    const struct comm *comm, const char *path, const char *const *set, int n_set)
 {
     struct scene_errors errors = {0};
     struct scene *scene = scene_read(path, set, n_set, &errors);
     scene_report_errors(comm, &errors);
     uint64_t hash = scene->hash;
     comm_bcast(comm, &hash, sizeof hash, 0);
-    if (hash != scene->hash) scene_errors_add(&errors, "%s: rank %d reads another scene there than rank 0", path, comm->rank);
+    if (hash != scene->hash)
+        scene_errors_add(
+            &errors, "%s: rank %d reads another scene there than rank 0", path, comm->rank);
     scene_report_errors(comm, &errors);
     return scene;
 }

@@ -1,6 +1,6 @@
-/* --set KEY=VALUE: changes to the node tree of a scene before it is read, so that everything after treats them like the file's own text.
- * Mappings on the way are created; entries of lists are not. `null` as VALUE takes a key or an entry of a
- * list away. */
+/* --set KEY=VALUE: changes to the node tree of a scene before it is read, so that everything after
+ * treats them like the file's own text. Mappings on the way are created; entries of lists are not.
+ * `null` as VALUE takes a key or an entry of a list away. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,8 +10,8 @@
 #include "scene_reader.h"
 
 /* Says that the list has no such entry; `path` ends with the step. */
-static void report_no_entry(
-    struct scene_reader *reader, const struct scene_node *at, const struct scene_node *list, const struct scene_step *step, const char *path)
+static void report_no_entry(struct scene_reader *reader, const struct scene_node *at,
+    const struct scene_node *list, const struct scene_step *step, const char *path)
 {
     if (!step->word) {
         if (list->n == 0) scene_issue_at(reader, at, path, "no such entry, the list is empty");
@@ -60,14 +60,18 @@ static void apply(struct scene_reader *reader, const char *key, struct scene_nod
     const char *next = key;
     struct scene_step step;
     while (scene_path_step(&next, &step)) {
-        char *path = fail_format("%.*s", (int)(next - key) - (next > key && *next && next[-1] == '.'), key);
+        char *path =
+            fail_format("%.*s", (int)(next - key) - (next > key && *next && next[-1] == '.'), key);
         int k = scene_path_follow(node, &step);
         const char *problem = NULL;
         if (node->kind == NODE_SCALAR) problem = "what it would be part of is a single value";
-        else if (node->kind == NODE_MAPPING && !step.word) problem = "what it would be part of is no list";
-        else if (node->kind == NODE_MAPPING && k < 0 && *next == '[') problem = "the scene does not give this list; set it as a whole";
+        else if (node->kind == NODE_MAPPING && !step.word)
+            problem = "what it would be part of is no list";
+        else if (node->kind == NODE_MAPPING && k < 0 && *next == '[')
+            problem = "the scene does not give this list; set it as a whole";
         if (problem) scene_issue_at(reader, value, path, "%s", problem);
-        else if (node->kind == NODE_SEQUENCE && k < 0) report_no_entry(reader, value, node, &step, path);
+        else if (node->kind == NODE_SEQUENCE && k < 0)
+            report_no_entry(reader, value, node, &step, path);
         bool stop = problem || (node->kind == NODE_SEQUENCE && k < 0);
         free(path);
         if (stop) break;
@@ -97,7 +101,8 @@ void scene_set_apply(struct scene_reader *reader, int k)
     const char *rest = key;
     while (scene_path_step(&rest, &step)) {}
     if (*rest) {
-        scene_issue_at(reader, &here, "", "cannot read '%s' as a key like walls[1].motion.remove_at", key);
+        scene_issue_at(
+            reader, &here, "", "cannot read '%s' as a key like walls[1].motion.remove_at", key);
         free(key);
         return;
     }

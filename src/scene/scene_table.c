@@ -9,8 +9,10 @@
 #include "history.h"
 #include "scene_values.h"
 
-/* The file that the node names, if it can be read: as usable from the working directory, and without links. Both are the caller's. */
-static bool find_file(const struct scene_place *p, const struct scene_node *node, char **as_given, char **absolute)
+/* The file that the node names, if it can be read: as usable from the working directory, and
+ * without links. Both are the caller's. */
+static bool find_file(
+    const struct scene_place *p, const struct scene_node *node, char **as_given, char **absolute)
 {
     const char *folder = node->text[0] == '/' ? "" : p->reader->folder;
     char *file = fail_format("%s%s", folder, node->text);
@@ -33,7 +35,9 @@ static bool find_file(const struct scene_place *p, const struct scene_node *node
 void scene_table_file(const struct scene_place *p, const struct scene_node *node)
 {
     char *file, *absolute;
-    if (!scene_values_is_kind(p, node, NODE_SCALAR, "the path of a file") || !find_file(p, node, &file, &absolute)) return;
+    if (!scene_values_is_kind(p, node, NODE_SCALAR, "the path of a file") ||
+        !find_file(p, node, &file, &absolute))
+        return;
     char **to = scene_key_place(p->key, p->record);
     free(*to);
     *to = file;
@@ -44,10 +48,13 @@ void scene_table_file(const struct scene_place *p, const struct scene_node *node
 }
 
 /* A list of pairs of time and factor into *point; false with an issue where it is none. */
-static bool read_pairs(const struct scene_place *p, const struct scene_node *node, double (**point)[2])
+static bool read_pairs(
+    const struct scene_place *p, const struct scene_node *node, double (**point)[2])
 {
     bool good = node->n > 0;
-    if (!good) scene_issue_at(p->reader, node, p->path, "expected a list of pairs, or a file, found an empty list");
+    if (!good)
+        scene_issue_at(
+            p->reader, node, p->path, "expected a list of pairs, or a file, found an empty list");
     *point = fail_alloc((size_t)node->n * sizeof **point);
     struct scene_key factor = *p->key;
     factor.unit = UNIT_NONE;
@@ -59,7 +66,8 @@ static bool read_pairs(const struct scene_place *p, const struct scene_node *nod
         bool is_pair = pair->kind == NODE_SEQUENCE && pair->n == 2;
         if (!is_pair) scene_issue_at(p->reader, pair, own.path, "expected [time, factor]");
         bool read = is_pair && scene_values_number(&own, pair->item[0], own.path, &(*point)[k][0]);
-        good = read && scene_values_number(&second, pair->item[1], own.path, &(*point)[k][1]) && good;
+        good =
+            read && scene_values_number(&second, pair->item[1], own.path, &(*point)[k][1]) && good;
         if (read && good && k > 0 && !((*point)[k][0] > (*point)[k - 1][0])) {
             scene_issue_at(p->reader, pair, own.path, "times must ascend");
             good = false;
@@ -75,7 +83,8 @@ void scene_table_read(const struct scene_place *p, const struct scene_node *node
     char *file = NULL, *absolute = NULL, *problem = NULL;
     bool good = false;
     if (node->kind == NODE_SEQUENCE) good = read_pairs(p, node, &table.point);
-    else if (scene_values_is_kind(p, node, NODE_SCALAR, "a list of pairs, or a file,") && find_file(p, node, &file, &absolute)) {
+    else if (scene_values_is_kind(p, node, NODE_SCALAR, "a list of pairs, or a file,") &&
+             find_file(p, node, &file, &absolute)) {
         problem = history_read(&table, file);
         good = !problem;
         if (problem) scene_issue_at(p->reader, node, p->path, "%s", problem);

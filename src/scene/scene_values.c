@@ -1,4 +1,5 @@
-/* Values of keys: one reader per type. Each checks the node, stores the value in the record and writes it, in SI, to the resolved text. */
+/* Values of keys: one reader per type. Each checks the node, stores the value in the record and
+ * writes it, in SI, to the resolved text. */
 #include <ctype.h>
 #include <limits.h>
 #include <math.h>
@@ -14,10 +15,12 @@
 
 enum { MAX_WORDS = 32 };
 
-bool scene_values_is_kind(const struct scene_place *p, const struct scene_node *node, enum scene_node_kind kind, const char *expected)
+bool scene_values_is_kind(const struct scene_place *p, const struct scene_node *node,
+    enum scene_node_kind kind, const char *expected)
 {
     if (node->kind == kind && !scene_yaml_is_null(node)) return true;
-    scene_issue_at(p->reader, node, p->path, "expected %s, found %s", expected, scene_yaml_kind_name(node));
+    scene_issue_at(
+        p->reader, node, p->path, "expected %s, found %s", expected, scene_yaml_kind_name(node));
     return false;
 }
 
@@ -44,20 +47,26 @@ void scene_values_join(char *text, size_t size, const char *const *word, int n)
     }
 }
 
-static int find_word(const struct scene_place *p, const struct scene_node *node, const char *const *word, int n, const char *what)
+static int find_word(const struct scene_place *p, const struct scene_node *node,
+    const char *const *word, int n, const char *what)
 {
     for (int k = 0; k < n; k++)
         if (*word[k] && strcmp(word[k], node->text) == 0) return k;
     const char *near = nearest_name(node->text, word, n);
     char all[512];
     scene_values_join(all, sizeof all, word, n);
-    if (near && *near) scene_issue_at(p->reader, node, p->path, "unknown %s '%s'; did you mean '%s'?", what, node->text, near);
-    else if (*all) scene_issue_at(p->reader, node, p->path, "unknown %s '%s'; there is: %s", what, node->text, all);
+    if (near && *near)
+        scene_issue_at(p->reader, node, p->path, "unknown %s '%s'; did you mean '%s'?", what,
+            node->text, near);
+    else if (*all)
+        scene_issue_at(
+            p->reader, node, p->path, "unknown %s '%s'; there is: %s", what, node->text, all);
     else scene_issue_at(p->reader, node, p->path, "unknown %s '%s'", what, node->text);
     return -1;
 }
 
-bool scene_values_number(const struct scene_place *p, const struct scene_node *node, const char *path, double *value)
+bool scene_values_number(
+    const struct scene_place *p, const struct scene_node *node, const char *path, double *value)
 {
     const struct scene_key *key = p->key;
     struct scene_place own = *p;
@@ -69,7 +78,8 @@ bool scene_values_number(const struct scene_place *p, const struct scene_node *n
     }
     char problem[256], range[64];
     if (!units_parse(node->text, key->unit, value, problem, sizeof problem)) {
-        if (key->special) scene_issue_at(p->reader, node, path, "%s, or '%s'", problem, key->special);
+        if (key->special)
+            scene_issue_at(p->reader, node, path, "%s, or '%s'", problem, key->special);
         else scene_issue_at(p->reader, node, path, "%s", problem);
         return false;
     }
@@ -82,7 +92,8 @@ bool scene_values_number(const struct scene_place *p, const struct scene_node *n
 static void write_number(const struct scene_place *p, double value)
 {
     const struct scene_key *key = p->key;
-    if (key->special && (value == key->special_value)) scene_write(&p->reader->out, "%s", key->special);
+    if (key->special && (value == key->special_value))
+        scene_write(&p->reader->out, "%s", key->special);
     else scene_write_number(&p->reader->out, value);
 }
 
@@ -127,13 +138,15 @@ static void read_integer(const struct scene_place *p, const struct scene_node *n
 {
     double value;
     if (!scene_values_number(p, node, p->path, &value)) return;
-    if (value != floor(value) || fabs(value) > 9007199254740992.0) { /* 2^53: beyond, doubles skip integers */
+    /* 2^53: beyond, doubles skip integers */
+    if (value != floor(value) || fabs(value) > 9007199254740992.0) {
         scene_issue_at(p->reader, node, p->path, "expected a whole number, found %s", node->text);
         return;
     }
     long *to = scene_key_place(p->key, p->record);
     if (to) *to = (long)value;
-    if (p->key->special && value == p->key->special_value) scene_write_value(&p->reader->out, p->key->special);
+    if (p->key->special && value == p->key->special_value)
+        scene_write_value(&p->reader->out, p->key->special);
     else scene_write(&p->reader->out, " %ld\n", (long)value);
 }
 
@@ -142,7 +155,8 @@ static void read_bool(const struct scene_place *p, const struct scene_node *node
     bool is_true = node->kind == NODE_SCALAR && strcmp(node->text, "true") == 0;
     if (!is_true && !(node->kind == NODE_SCALAR && strcmp(node->text, "false") == 0)) {
         if (scene_values_is_kind(p, node, NODE_SCALAR, "true or false"))
-            scene_issue_at(p->reader, node, p->path, "expected true or false, found '%s'", node->text);
+            scene_issue_at(
+                p->reader, node, p->path, "expected true or false, found '%s'", node->text);
         return;
     }
     bool *to = scene_key_place(p->key, p->record);
@@ -193,12 +207,16 @@ const char *scene_values_name_problem(const struct scene_node *node)
 /* What a key refers to by name. */
 static const char *referred_name(const struct scene *scene, enum key_type type, int k)
 {
-    const char *name = type == KEY_WALL ? scene->wall[k].name : type == KEY_BODY ? scene->body[k].name : scene->material[k].name;
+    const char *name = type == KEY_WALL   ? scene->wall[k].name
+                       : type == KEY_BODY ? scene->body[k].name
+                                          : scene->material[k].name;
     return name ? name : "";
 }
 
-/* Index of a material, wall or body by name; -1 and an issue if there is none. Silent where none could be read at all: that has its own issue. */
-static int find_reference(const struct scene_place *p, const struct scene_node *node, enum key_type type)
+/* Index of a material, wall or body by name; -1 and an issue if there is none. Silent where none
+ * could be read at all: that has its own issue. */
+static int find_reference(
+    const struct scene_place *p, const struct scene_node *node, enum key_type type)
 {
     const struct scene *scene = p->reader->scene;
     const char *what = type == KEY_WALL ? "wall" : type == KEY_BODY ? "body" : "material";
@@ -229,7 +247,8 @@ static void read_pair(const struct scene_place *p, const struct scene_node *node
 {
     if (!scene_values_is_kind(p, node, NODE_SEQUENCE, "a list of two materials")) return;
     if (node->n != 2) {
-        scene_issue_at(p->reader, node, p->path, "expected a list of two materials, found %d", node->n);
+        scene_issue_at(
+            p->reader, node, p->path, "expected a list of two materials, found %d", node->n);
         return;
     }
     int *to = scene_key_place(p->key, p->record);
@@ -248,7 +267,8 @@ static void read_pair(const struct scene_place *p, const struct scene_node *node
 }
 
 /* Lists out of fixed words, each at most once: `index` gets those found. Returns their number. */
-static int read_word_list(const struct scene_place *p, const struct scene_node *node, const char *words, const char *what, int *index)
+static int read_word_list(const struct scene_place *p, const struct scene_node *node,
+    const char *words, const char *what, int *index)
 {
     char buffer[256], expected[64];
     const char *word[MAX_WORDS];
@@ -258,10 +278,13 @@ static int read_word_list(const struct scene_place *p, const struct scene_node *
     for (int k = 0; k < node->n; k++) {
         struct scene_place own = *p;
         own.path = fail_format("%s[%d]", p->path, k);
-        int found = scene_values_is_kind(&own, node->item[k], NODE_SCALAR, "a word") ? find_word(&own, node->item[k], word, n_word, what) : -1;
+        int found = scene_values_is_kind(&own, node->item[k], NODE_SCALAR, "a word")
+                        ? find_word(&own, node->item[k], word, n_word, what)
+                        : -1;
         bool again = false;
         for (int j = 0; j < n; j++) again = again || index[j] == found;
-        if (found >= 0 && again) scene_issue_at(p->reader, node->item[k], own.path, "'%s' is listed twice", word[found]);
+        if (found >= 0 && again)
+            scene_issue_at(p->reader, node->item[k], own.path, "'%s' is listed twice", word[found]);
         else if (found >= 0) index[n++] = found;
         free((char *)own.path);
     }
@@ -275,7 +298,8 @@ static void read_axes(const struct scene_place *p, const struct scene_node *node
 {
     int index[MAX_WORDS];
     bool *to = scene_key_place(p->key, p->record);
-    for (int k = read_word_list(p, node, p->key->words, "direction", index) - 1; k >= 0; k--) to[index[k]] = true;
+    for (int k = read_word_list(p, node, p->key->words, "direction", index) - 1; k >= 0; k--)
+        to[index[k]] = true;
 }
 
 static void read_words(const struct scene_place *p, const struct scene_node *node)
@@ -290,7 +314,8 @@ static void read_words(const struct scene_place *p, const struct scene_node *nod
     *(int *)((char *)p->record + p->key->count_at - 1) = n;
 }
 
-void scene_values_read(struct scene_reader *reader, const struct scene_key *key, const struct scene_node *node, const char *path, void *record)
+void scene_values_read(struct scene_reader *reader, const struct scene_key *key,
+    const struct scene_node *node, const char *path, void *record)
 {
     struct scene_place p = {reader, key, path, record};
     double value;

@@ -45,7 +45,8 @@ void scene_yaml_free(struct scene_node *node)
     free(node);
 }
 
-static struct scene_node *refuse(struct conversion *c, const yaml_node_t *from, struct scene_node *half, const char *why)
+static struct scene_node *refuse(
+    struct conversion *c, const yaml_node_t *from, struct scene_node *half, const char *why)
 {
     c->error->line = (int)from->start_mark.line + 1;
     c->error->column = (int)from->start_mark.column + 1;
@@ -57,12 +58,16 @@ static struct scene_node *refuse(struct conversion *c, const yaml_node_t *from, 
 static struct scene_node *convert(struct conversion *c, int id, int depth)
 {
     const yaml_node_t *from = yaml_document_get_node(c->document, id);
-    if (depth > MAX_DEPTH) return refuse(c, from, NULL, "nested too deeply (an alias that contains itself?)");
-    if (++c->n_node > MAX_NODES) return refuse(c, from, NULL, "too large: bulk data belong into files of their own");
-    struct scene_node *node = new_node(NODE_SCALAR, c->set, (int)from->start_mark.line + 1, (int)from->start_mark.column + 1);
+    if (depth > MAX_DEPTH)
+        return refuse(c, from, NULL, "nested too deeply (an alias that contains itself?)");
+    if (++c->n_node > MAX_NODES)
+        return refuse(c, from, NULL, "too large: bulk data belong into files of their own");
+    struct scene_node *node = new_node(
+        NODE_SCALAR, c->set, (int)from->start_mark.line + 1, (int)from->start_mark.column + 1);
     if (from->type == YAML_SCALAR_NODE) {
         const char *bytes = (const char *)from->data.scalar.value;
-        if (strlen(bytes) != from->data.scalar.length) return refuse(c, from, node, "text with a null character");
+        if (strlen(bytes) != from->data.scalar.length)
+            return refuse(c, from, node, "text with a null character");
         node->text = fail_strdup(bytes);
         node->plain = from->data.scalar.style == YAML_PLAIN_SCALAR_STYLE;
     } else if (from->type == YAML_SEQUENCE_NODE) {
@@ -70,7 +75,8 @@ static struct scene_node *convert(struct conversion *c, int id, int depth)
         size_t n = (size_t)(from->data.sequence.items.top - from->data.sequence.items.start);
         node->item = fail_alloc(n * sizeof *node->item);
         for (size_t k = 0; k < n; k++, node->n++)
-            if (!(node->item[k] = convert(c, from->data.sequence.items.start[k], depth + 1))) return scene_yaml_free(node), NULL;
+            if (!(node->item[k] = convert(c, from->data.sequence.items.start[k], depth + 1)))
+                return scene_yaml_free(node), NULL;
     } else {
         node->kind = NODE_MAPPING;
         size_t n = (size_t)(from->data.mapping.pairs.top - from->data.mapping.pairs.start);
@@ -79,7 +85,8 @@ static struct scene_node *convert(struct conversion *c, int id, int depth)
         for (size_t k = 0; k < n; k++) {
             const yaml_node_pair_t *pair = &from->data.mapping.pairs.start[k];
             const yaml_node_t *name = yaml_document_get_node(c->document, pair->key);
-            if (name->type != YAML_SCALAR_NODE) return refuse(c, name, node, "a key must be a word, not a list or mapping");
+            if (name->type != YAML_SCALAR_NODE)
+                return refuse(c, name, node, "a key must be a word, not a list or mapping");
             node->key[k] = convert(c, pair->key, depth + 1);
             node->item[k] = node->key[k] ? convert(c, pair->value, depth + 1) : NULL;
             node->n++; /* before the way out, so that the key is freed */
@@ -89,15 +96,21 @@ static struct scene_node *convert(struct conversion *c, int id, int depth)
     return node;
 }
 
-/* Length of the UTF-8 character at p (n bytes left), 0 if it is none. Overlong forms and surrogates are none. */
+/* Length of the UTF-8 character at p (n bytes left), 0 if it is none. Overlong forms and surrogates
+ * are none. */
 static size_t utf8_length(const unsigned char *p, size_t n)
 {
     if (p[0] < 0x80) return 1;
-    size_t length = p[0] >= 0xc2 && p[0] <= 0xdf ? 2 : p[0] >= 0xe0 && p[0] <= 0xef ? 3 : p[0] >= 0xf0 && p[0] <= 0xf4 ? 4 : 0;
+    size_t length = p[0] >= 0xc2 && p[0] <= 0xdf   ? 2
+                    : p[0] >= 0xe0 && p[0] <= 0xef ? 3
+                    : p[0] >= 0xf0 && p[0] <= 0xf4 ? 4
+                                                   : 0;
     if (length == 0 || length > n) return 0;
     for (size_t k = 1; k < length; k++)
         if ((p[k] & 0xc0) != 0x80) return 0;
-    if ((p[0] == 0xe0 && p[1] < 0xa0) || (p[0] == 0xed && p[1] > 0x9f) || (p[0] == 0xf0 && p[1] < 0x90) || (p[0] == 0xf4 && p[1] > 0x8f)) return 0;
+    if ((p[0] == 0xe0 && p[1] < 0xa0) || (p[0] == 0xed && p[1] > 0x9f) ||
+        (p[0] == 0xf0 && p[1] < 0x90) || (p[0] == 0xf4 && p[1] > 0x8f))
+        return 0;
     return length;
 }
 
@@ -108,11 +121,13 @@ static bool find_bad_character(const char *text, size_t length, struct scene_yam
     for (size_t k = 0; k < length;) {
         const unsigned char *p = (const unsigned char *)text + k;
         size_t step = utf8_length(p, length - k);
-        bool control = step == 1 && (*p < 0x20 || *p == 0x7f) && *p != '\t' && *p != '\n' && *p != '\r';
+        bool control =
+            step == 1 && (*p < 0x20 || *p == 0x7f) && *p != '\t' && *p != '\n' && *p != '\r';
         if (step == 0 || control) {
             error->line = line;
             error->column = column;
-            if (step == 0) snprintf(error->text, sizeof error->text, "not UTF-8 text (byte 0x%02x)", *p);
+            if (step == 0)
+                snprintf(error->text, sizeof error->text, "not UTF-8 text (byte 0x%02x)", *p);
             else snprintf(error->text, sizeof error->text, "control character 0x%02x", *p);
             return true;
         }
@@ -130,8 +145,8 @@ static void take_problem(const yaml_parser_t *parser, struct scene_yaml_error *e
     error->column = (int)parser->problem_mark.column + 1;
     const char *problem = parser->problem ? parser->problem : "cannot be parsed";
     if (parser->context)
-        snprintf(
-            error->text, sizeof error->text, "not valid YAML: %s, %s (from line %d)", problem, parser->context, (int)parser->context_mark.line + 1);
+        snprintf(error->text, sizeof error->text, "not valid YAML: %s, %s (from line %d)", problem,
+            parser->context, (int)parser->context_mark.line + 1);
     else snprintf(error->text, sizeof error->text, "not valid YAML: %s", problem);
 }
 
@@ -153,9 +168,11 @@ static bool has_more(yaml_parser_t *parser, struct scene_yaml_error *error)
     return root;
 }
 
-struct scene_node *scene_yaml_parse(const char *text, size_t length, int set, struct scene_yaml_error *error)
+struct scene_node *scene_yaml_parse(
+    const char *text, size_t length, int set, struct scene_yaml_error *error)
 {
-    if (length >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) { /* a byte order mark, as some editors write */
+    /* a byte order mark, as some editors write */
+    if (length >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) {
         text += 3;
         length -= 3;
     }
@@ -170,7 +187,8 @@ struct scene_node *scene_yaml_parse(const char *text, size_t length, int set, st
         take_problem(&parser, error);
     } else {
         if (!yaml_document_get_root_node(&document)) {
-            *error = (struct scene_yaml_error){.line = 1, .column = 1, .text = "there is nothing in it"};
+            *error =
+                (struct scene_yaml_error){.line = 1, .column = 1, .text = "there is nothing in it"};
         } else {
             struct conversion c = {.document = &document, .error = error, .set = set};
             node = convert(&c, 1, 0);
@@ -229,7 +247,8 @@ void scene_yaml_remove(struct scene_node *node, const char *name)
 bool scene_yaml_is_null(const struct scene_node *node)
 {
     if (node->kind != NODE_SCALAR || !node->plain) return false;
-    return strcmp(node->text, "") == 0 || strcmp(node->text, "~") == 0 || strcmp(node->text, "null") == 0;
+    return strcmp(node->text, "") == 0 || strcmp(node->text, "~") == 0 ||
+           strcmp(node->text, "null") == 0;
 }
 
 const char *scene_yaml_kind_name(const struct scene_node *node)

@@ -1,7 +1,8 @@
-/* A YAML text as a small tree of nodes that know their line and column. It knows no key of the scene language.
+/* A YAML text as a small tree of nodes that know their line and column. It knows no key of the
+ * scene language.
  *
- * Aliases are expanded (within limits), tags and comments are dropped, the keys of mappings must be plain text. Duplicate keys are kept:
- * the reader reports them. One document per text. */
+ * Aliases are expanded (within limits), tags and comments are dropped, the keys of mappings must be
+ * plain text. Duplicate keys are kept: the reader reports them. One document per text. */
 #ifndef DEMOCLES_SCENE_YAML_H
 #define DEMOCLES_SCENE_YAML_H
 
@@ -27,17 +28,20 @@ struct scene_yaml_error {
     char text[256];
 };
 
-/* Parses `length` bytes of YAML into a new tree, owned by the caller. NULL and `error` where they are not valid UTF-8 or YAML, or hold nothing.
- * `set` goes into every node. */
-struct scene_node *scene_yaml_parse(const char *text, size_t length, int set, struct scene_yaml_error *error);
+/* Parses `length` bytes of YAML into a new tree, owned by the caller. NULL and `error` where they
+ * are not valid UTF-8 or YAML, or hold nothing. `set` goes into every node. */
+struct scene_node *scene_yaml_parse(
+    const char *text, size_t length, int set, struct scene_yaml_error *error);
 void scene_yaml_free(struct scene_node *node);
 
 struct scene_node *scene_yaml_new_mapping(int set, int line, int column);
 
-/* Value of the first key `name` of a mapping (index through *index if not NULL), or NULL; NULL too for other kinds of nodes. */
+/* Value of the first key `name` of a mapping (index through *index if not NULL), or NULL; NULL too
+ * for other kinds of nodes. */
 struct scene_node *scene_yaml_get(const struct scene_node *node, const char *name, int *index);
 
-/* Gives a mapping the pair name: value, in place of the first pair of that name if there is one. Takes `value` over. */
+/* Gives a mapping the pair name: value, in place of the first pair of that name if there is one.
+ * Takes `value` over. */
 void scene_yaml_put(struct scene_node *node, const char *name, struct scene_node *value);
 /* Takes the first pair of that name out of a mapping, if there is one. */
 void scene_yaml_remove(struct scene_node *node, const char *name);

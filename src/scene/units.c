@@ -37,7 +37,8 @@ static const struct kind_row {
     [UNIT_FRACTURE] = {"energy per area", "J/m2", {0, 1, -2, 0}},
 };
 
-/* A symbol is worth factor * 10^exponent of its SI unit. `prefixed`: k, m, u, ... may stand before it. */
+/* A symbol is worth factor * 10^exponent of its SI unit. `prefixed`: k, m, u, ... may stand before
+ * it. */
 static const struct symbol_row {
     const char *symbol;
     double factor;
@@ -71,7 +72,8 @@ static const struct prefix_row {
     const char *prefix;
     int exponent;
 } PREFIXES[] = {
-    {"T", 12}, {"G", 9}, {"M", 6}, {"k", 3}, {"d", -1}, {"c", -2}, {"m", -3}, {"u", -6}, {"\xc2\xb5", -6}, {"\xce\xbc", -6}, {"n", -9},
+    {"T", 12}, {"G", 9}, {"M", 6}, {"k", 3}, {"d", -1}, {"c", -2}, {"m", -3}, {"u", -6},
+    {"\xc2\xb5", -6}, {"\xce\xbc", -6}, {"n", -9},
     {"p", -12}, /* micro: u, the sign U+00B5, the Greek letter U+03BC */
 };
 
@@ -113,18 +115,22 @@ size_t units_number_length(const char *text)
     return (size_t)(p - text);
 }
 
-/* The row of a bare or prefixed symbol of n bytes; *exponent is the prefix's. "min" is a minute before it is a milli-inch of anything. */
+/* The row of a bare or prefixed symbol of n bytes; *exponent is the prefix's. "min" is a minute
+ * before it is a milli-inch of anything. */
 static const struct symbol_row *find_symbol(const char *name, size_t n, int *exponent)
 {
     *exponent = 0;
     for (size_t i = 0; i < COUNT(SYMBOLS); i++)
-        if (strlen(SYMBOLS[i].symbol) == n && memcmp(SYMBOLS[i].symbol, name, n) == 0) return &SYMBOLS[i];
+        if (strlen(SYMBOLS[i].symbol) == n && memcmp(SYMBOLS[i].symbol, name, n) == 0)
+            return &SYMBOLS[i];
     for (size_t k = 0; k < COUNT(PREFIXES); k++) {
         size_t length = strlen(PREFIXES[k].prefix);
         if (length >= n || memcmp(PREFIXES[k].prefix, name, length) != 0) continue;
         for (size_t i = 0; i < COUNT(SYMBOLS); i++) {
             const struct symbol_row *row = &SYMBOLS[i];
-            if (!row->prefixed || strlen(row->symbol) != n - length || memcmp(row->symbol, name + length, n - length) != 0) continue;
+            if (!row->prefixed || strlen(row->symbol) != n - length ||
+                memcmp(row->symbol, name + length, n - length) != 0)
+                continue;
             *exponent = PREFIXES[k].exponent;
             return row;
         }
@@ -132,7 +138,8 @@ static const struct symbol_row *find_symbol(const char *name, size_t n, int *exp
     return NULL;
 }
 
-/* One factor "cm3", "s^-2", "1" at *text, multiplied into `unit` (sign +1) or divided out of it (-1). Moves *text behind it. */
+/* One factor "cm3", "s^-2", "1" at *text, multiplied into `unit` (sign +1) or divided out of it
+ * (-1). Moves *text behind it. */
 static bool parse_factor(const char **text, int sign, struct unit *unit)
 {
     const char *start = *text, *p = start;
@@ -140,7 +147,8 @@ static bool parse_factor(const char **text, int sign, struct unit *unit)
     else
         while (*p && !strchr(" */^+-0123456789", *p)) p++;
     int exponent;
-    const struct symbol_row *row = p > start ? find_symbol(start, (size_t)(p - start), &exponent) : NULL;
+    const struct symbol_row *row =
+        p > start ? find_symbol(start, (size_t)(p - start), &exponent) : NULL;
     if (!row) return false;
     if (*start == '1' && *p && !strchr(" */", *p)) return false;
     int power = 1;
@@ -153,7 +161,8 @@ static bool parse_factor(const char **text, int sign, struct unit *unit)
         p = end;
     }
     power *= sign;
-    for (int k = 0; k < abs(power); k++) unit->factor = power > 0 ? unit->factor * row->factor : unit->factor / row->factor;
+    for (int k = 0; k < abs(power); k++)
+        unit->factor = power > 0 ? unit->factor * row->factor : unit->factor / row->factor;
     unit->exponent += power * (row->exponent + exponent);
     unit->dim.m += power * row->dim.m;
     unit->dim.kg += power * row->dim.kg;
@@ -163,7 +172,8 @@ static bool parse_factor(const char **text, int sign, struct unit *unit)
     return true;
 }
 
-/* factor {(" " | "*") factor} {"/" factor}. A product behind a slash ("J/kg K") would be ambiguous and is refused. */
+/* factor {(" " | "*") factor} {"/" factor}. A product behind a slash ("J/kg K") would be ambiguous
+ * and is refused. */
 static bool parse_unit(const char *text, struct unit *unit)
 {
     *unit = (struct unit){.factor = 1};
@@ -191,19 +201,22 @@ static const char *expected(enum unit_kind kind, char *text, size_t size)
     const char *name = KINDS[kind].name;
     const char *article = strchr("aeiou", name[0]) ? "an" : "a";
     if (kind == UNIT_NONE) snprintf(text, size, "a plain number, without unit");
-    else if (KINDS[kind].si[0] == '1') snprintf(text, size, "%s %s, as in '1 %s'", article, name, "Hz");
+    else if (KINDS[kind].si[0] == '1')
+        snprintf(text, size, "%s %s, as in '1 %s'", article, name, "Hz");
     else snprintf(text, size, "%s %s, as in '1 %s'", article, name, KINDS[kind].si);
     return text;
 }
 
-static bool wrong_kind(const char *unit_text, struct dimension dim, enum unit_kind kind, char *problem, size_t size)
+static bool wrong_kind(
+    const char *unit_text, struct dimension dim, enum unit_kind kind, char *problem, size_t size)
 {
     char want[64];
     expected(kind, want, sizeof want);
     for (int k = 1; k < UNIT_KINDS; k++)
         if (same_dimension(KINDS[k].dim, dim)) {
             const char *article = strchr("aeiou", KINDS[k].name[0]) ? "an" : "a";
-            snprintf(problem, size, "'%s' is the unit of %s %s; expected %s", unit_text, article, KINDS[k].name, want);
+            snprintf(problem, size, "'%s' is the unit of %s %s; expected %s", unit_text, article,
+                KINDS[k].name, want);
             return false;
         }
     snprintf(problem, size, "'%s' is the wrong unit; expected %s", unit_text, want);
@@ -218,7 +231,8 @@ static double scaled_number(const char *text, size_t n, int exponent)
     if (!e) e = memchr(text, 'E', n);
     size_t mantissa = e ? (size_t)(e - text) : n;
     long own = e ? strtol(e + 1, NULL, 10) : 0;
-    if (mantissa > 360) return strtod(text, NULL) * pow(10, exponent); /* absurdly long: an ulp does not matter */
+    /* absurdly long: an ulp does not matter */
+    if (mantissa > 360) return strtod(text, NULL) * pow(10, exponent);
     if (own > 100000) own = 100000;
     if (own < -100000) own = -100000;
     snprintf(joined, sizeof joined, "%.*se%ld", (int)mantissa, text, own + exponent);
@@ -233,17 +247,21 @@ bool units_parse(const char *text, enum unit_kind kind, double *value, char *pro
     const char *rest = text + n;
     while (*rest == ' ') rest++;
     size_t gap = (size_t)(rest - text) - n;
-    if (n == 0 || (gap == 0 && *rest && !isalpha((unsigned char)*rest) && *rest != '%' && (unsigned char)*rest < 0x80)) {
-        snprintf(problem, size, "'%s' is not a number; expected %s", text, expected(kind, want, sizeof want));
+    if (n == 0 || (gap == 0 && *rest && !isalpha((unsigned char)*rest) && *rest != '%' &&
+                      (unsigned char)*rest < 0x80)) {
+        snprintf(problem, size, "'%s' is not a number; expected %s", text,
+            expected(kind, want, sizeof want));
         return false;
     }
     struct unit unit = {.factor = 1, .dim = KINDS[kind].dim};
     if (*rest) {
         if (!parse_unit(rest, &unit)) {
-            snprintf(problem, size, "unknown unit '%s'; expected %s", rest, expected(kind, want, sizeof want));
+            snprintf(problem, size, "unknown unit '%s'; expected %s", rest,
+                expected(kind, want, sizeof want));
             return false;
         }
-        if (!same_dimension(unit.dim, KINDS[kind].dim)) return wrong_kind(rest, unit.dim, kind, problem, size);
+        if (!same_dimension(unit.dim, KINDS[kind].dim))
+            return wrong_kind(rest, unit.dim, kind, problem, size);
     }
     double number = scaled_number(text, n, unit.exponent);
     if (unit.factor != 1) number *= unit.factor;

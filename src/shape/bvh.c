@@ -1,5 +1,5 @@
-/* Built top down: the boxes of a node are sorted by their middle along its longest side and cut in half. Children lie side by side behind their
- * parent. */
+/* Built top down: the boxes of a node are sorted by their middle along its longest side and cut in
+ * half. Children lie side by side behind their parent. */
 #include "bvh.h"
 
 #include "comm/fail.h"
@@ -35,11 +35,14 @@ static void bound(struct bvh *bvh, int node, const double *low, const double *hi
 }
 
 /* Makes a leaf of more than LEAF items an inner node with two leaves. */
-static void split(struct bvh *bvh, int node, const double *low, const double *high, struct middle *middle)
+static void split(
+    struct bvh *bvh, int node, const double *low, const double *high, struct middle *middle)
 {
     int first = bvh->first[node], count = bvh->count[node], axis = 0, left = bvh->n_node;
     for (int a = 1; a < 3; a++)
-        if (bvh->high[3 * node + a] - bvh->low[3 * node + a] > bvh->high[3 * node + axis] - bvh->low[3 * node + axis]) axis = a;
+        if (bvh->high[3 * node + a] - bvh->low[3 * node + a] >
+            bvh->high[3 * node + axis] - bvh->low[3 * node + axis])
+            axis = a;
     for (int k = 0; k < count; k++) {
         int item = bvh->item[first + k];
         middle[k] = (struct middle){0.5 * (low[3 * item + axis] + high[3 * item + axis]), item};
@@ -90,19 +93,22 @@ void bvh_free(struct bvh *bvh)
     free(bvh);
 }
 
-void bvh_visit(const struct bvh *bvh, const double low[3], const double high[3], void (*visit)(int item, void *context), void *context)
+void bvh_visit(const struct bvh *bvh, const double low[3], const double high[3],
+    void (*visit)(int item, void *context), void *context)
 {
     int stack[2 * DEPTH], top = 0;
     if (bvh->n_node) stack[top++] = 0;
     while (top) {
         int node = stack[--top], apart = 0;
-        for (int a = 0; a < 3; a++) apart |= bvh->low[3 * node + a] > high[a] || bvh->high[3 * node + a] < low[a];
+        for (int a = 0; a < 3; a++)
+            apart |= bvh->low[3 * node + a] > high[a] || bvh->high[3 * node + a] < low[a];
         if (apart) continue;
         if (bvh->count[node] == 0) {
             stack[top++] = bvh->first[node] + 1;
             stack[top++] = bvh->first[node];
             continue;
         }
-        for (int k = bvh->first[node]; k < bvh->first[node] + bvh->count[node]; k++) visit(bvh->item[k], context);
+        for (int k = bvh->first[node]; k < bvh->first[node] + bvh->count[node]; k++)
+            visit(bvh->item[k], context);
     }
 }

@@ -1,7 +1,8 @@
-/* Inside is decided by a ray upwards (+z): each triangle above the point, seen from above, adds the winding number of its outline around the ray,
- * and the sum over a closed surface is the winding number of the surface. An edge's side of the ray is computed from its two vertices in one
- * fixed order, so two triangles at an edge, or several at a vertex, always agree whose it is: no ray slips through, none is counted twice, and
- * nothing is jittered. */
+/* Inside is decided by a ray upwards (+z): each triangle above the point, seen from above, adds the
+ * winding number of its outline around the ray, and the sum over a closed surface is the winding
+ * number of the surface. An edge's side of the ray is computed from its two vertices in one fixed
+ * order, so two triangles at an edge, or several at a vertex, always agree whose it is: no ray
+ * slips through, none is counted twice, and nothing is jittered. */
 #include "solid.h"
 
 #include "bvh.h"
@@ -22,7 +23,8 @@ struct solid *solid_create(const struct stl *stl)
     double *low = fail_alloc(3 * n * sizeof *low), *high = fail_alloc(3 * n * sizeof *high);
     for (size_t t = 0; t < n; t++)
         for (int a = 0; a < 3; a++) {
-            double p = stl->vertex[3 * stl->triangle[3 * t] + a], q = stl->vertex[3 * stl->triangle[3 * t + 1] + a],
+            double p = stl->vertex[3 * stl->triangle[3 * t] + a],
+                   q = stl->vertex[3 * stl->triangle[3 * t + 1] + a],
                    s = stl->vertex[3 * stl->triangle[3 * t + 2] + a];
             low[3 * t + (size_t)a] = fmin(fmin(p, q), s);
             high[3 * t + (size_t)a] = fmax(fmax(p, q), s);
@@ -69,9 +71,11 @@ static pvec3 point_of(const double *p)
 static void visit_distance(int t, void *context)
 {
     struct query *query = context;
-    struct wall_primitive triangle = wall_primitive(
-        point_of(corner_of(query->stl, t, 0)), point_of(corner_of(query->stl, t, 1)), point_of(corner_of(query->stl, t, 2)), 0, 0, WALL_TRIANGLE);
-    query->nearest = fmin(query->nearest, wall_closest_triangle(triangle, point_of(query->x)).distance);
+    struct wall_primitive triangle =
+        wall_primitive(point_of(corner_of(query->stl, t, 0)), point_of(corner_of(query->stl, t, 1)),
+            point_of(corner_of(query->stl, t, 2)), 0, 0, WALL_TRIANGLE);
+    query->nearest =
+        fmin(query->nearest, wall_closest_triangle(triangle, point_of(query->x)).distance);
 }
 
 double solid_distance(const struct solid *solid, const double x[3], double limit)
@@ -92,8 +96,9 @@ static double side(const double *p, const double *q, const double *x)
     return (q[0] - p[0]) * (x[1] - p[1]) - (q[1] - p[1]) * (x[0] - p[0]);
 }
 
-/* What the edge p -> q adds to the winding number around x in the plane: +1 (-1) if it crosses, upwards (downwards), the half line from x to the
- * right. Half open in y, so a vertex belongs to one of its edges. Always computed from the lower end to the upper, which is the same for both
+/* What the edge p -> q adds to the winding number around x in the plane: +1 (-1) if it crosses,
+ * upwards (downwards), the half line from x to the right. Half open in y, so a vertex belongs to
+ * one of its edges. Always computed from the lower end to the upper, which is the same for both
  * triangles at the edge. */
 static int crossing(const double *p, const double *q, const double *x)
 {
@@ -103,14 +108,17 @@ static int crossing(const double *p, const double *q, const double *x)
     return side(q, p, x) > 0 ? -1 : 0;
 }
 
-/* What triangle t adds to the winding number of the points below *height on the line through x and y of x; 0: it does not cross the line. */
+/* What triangle t adds to the winding number of the points below *height on the line through x and
+ * y of x; 0: it does not cross the line. */
 static int cross(const struct stl *stl, int t, const double *x, double *height)
 {
     const double *p = corner_of(stl, t, 0), *q = corner_of(stl, t, 1), *s = corner_of(stl, t, 2);
     int winding = crossing(p, q, x) + crossing(q, s, x) + crossing(s, p, x);
     if (winding == 0) return 0;
-    double area = side(p, q, s), low = fmin(fmin(p[2], q[2]), s[2]), high = fmax(fmax(p[2], q[2]), s[2]);
-    if (area > 0 || area < 0) *height = (side(q, s, x) * p[2] + side(s, p, x) * q[2] + side(p, q, x) * s[2]) / area;
+    double area = side(p, q, s), low = fmin(fmin(p[2], q[2]), s[2]),
+           high = fmax(fmax(p[2], q[2]), s[2]);
+    if (area > 0 || area < 0)
+        *height = (side(q, s, x) * p[2] + side(s, p, x) * q[2] + side(p, q, x) * s[2]) / area;
     else *height = low;
     *height = r_clamp(*height, low, high);
     return winding;
@@ -153,7 +161,8 @@ static void visit_column(int t, void *context)
     if (low > 0) column->winding[low - 1] += winding;
 }
 
-void solid_contains_column(const struct solid *solid, double x, double y, const double *z, int n, uint8_t *holds)
+void solid_contains_column(
+    const struct solid *solid, double x, double y, const double *z, int n, uint8_t *holds)
 {
     double low[3] = {x, y, n > 0 ? z[0] : 0}, high[3] = {x, y, HUGE_VAL};
     struct column column = {solid->stl, low, z, n, fail_alloc((size_t)n * sizeof(int))};

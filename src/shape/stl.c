@@ -1,5 +1,5 @@
-/* Reading goes in two passes: file -> list of corners (triangle soup), then soup -> welded mesh. Binary files are told from ASCII by their size,
- * since many binary ones begin with `solid` too. */
+/* Reading goes in two passes: file -> list of corners (triangle soup), then soup -> welded mesh.
+ * Binary files are told from ASCII by their size, since many binary ones begin with `solid` too. */
 #include "stl.h"
 
 #include "comm/fail.h"
@@ -66,13 +66,15 @@ static char *read_binary(const char *path, const unsigned char *data, struct sou
 {
     uint32_t n = u32_at(data + 80);
     for (uint32_t t = 0; t < n; t++) {
-        const unsigned char *record = data + HEADER + (size_t)t * RECORD + 12; /* behind the normal */
+        /* behind the normal */
+        const unsigned char *record = data + HEADER + (size_t)t * RECORD + 12;
         double *corner = soup_add(soup);
         for (int k = 0; k < 9; k++) {
             uint32_t bits = u32_at(record + 4 * k);
             float value;
             memcpy(&value, &bits, sizeof value);
-            if (!isfinite(value)) return fail_format("%s: triangle %u: corner %d is not finite", path, t, k / 3 + 1);
+            if (!isfinite(value))
+                return fail_format("%s: triangle %u: corner %d is not finite", path, t, k / 3 + 1);
             corner[k] = (double)value;
         }
     }
@@ -95,7 +97,8 @@ static bool is_word(const char *at, size_t length, const char *word)
     return strlen(word) == length && strncasecmp(at, word, length) == 0;
 }
 
-/* Only corners count: `vertex x y z`, three to each `endloop`. Stored normals may be wrong and are not read. */
+/* Only corners count: `vertex x y z`, three to each `endloop`. Stored normals may be wrong and are
+ * not read. */
 static char *read_ascii(const char *path, const char *text, struct soup *soup)
 {
     const char *at = text;
@@ -105,17 +108,22 @@ static char *read_ascii(const char *path, const char *text, struct soup *soup)
     double corner[9];
     while (next_word(&at, &length, &line)) {
         if (is_word(at, length, "vertex")) {
-            if (n_corner == 3) return fail_format("%s:%d: more than three corners in a triangle", path, line);
+            if (n_corner == 3)
+                return fail_format("%s:%d: more than three corners in a triangle", path, line);
             for (int k = 0; k < 3; k++) {
-                if (!next_word(&at, &length, &line)) return fail_format("%s:%d: the file ends within a triangle", path, line);
+                if (!next_word(&at, &length, &line))
+                    return fail_format("%s:%d: the file ends within a triangle", path, line);
                 char *end;
                 double value = strtod(at, &end);
-                if (end != at + length || !isfinite(value)) return fail_format("%s:%d: '%.*s' is not a finite number", path, line, (int)length, at);
+                if (end != at + length || !isfinite(value))
+                    return fail_format(
+                        "%s:%d: '%.*s' is not a finite number", path, line, (int)length, at);
                 corner[3 * n_corner + k] = value;
             }
             n_corner++;
         } else if (is_word(at, length, "endloop")) {
-            if (n_corner != 3) return fail_format("%s:%d: %d corners in a triangle", path, line, n_corner);
+            if (n_corner != 3)
+                return fail_format("%s:%d: %d corners in a triangle", path, line, n_corner);
             memcpy(soup_add(soup), corner, sizeof corner);
             n_corner = 0;
         } else if (is_word(at, length, "endsolid") || is_word(at, length, "solid")) {
@@ -123,14 +131,18 @@ static char *read_ascii(const char *path, const char *text, struct soup *soup)
             length += strcspn(at + length, "\n"); /* a name may hold any word */
         } else if (is_word(at, length, "facet")) {
             length += strcspn(at + length, "\n");
-        } else if (!is_word(at, length, "outer") && !is_word(at, length, "loop") && !is_word(at, length, "endfacet")) {
-            return fail_format("%s:%d: '%.*s' is no word of an STL file", path, line, (int)(length < 40 ? length : 40), at);
+        } else if (!is_word(at, length, "outer") && !is_word(at, length, "loop") &&
+                   !is_word(at, length, "endfacet")) {
+            return fail_format("%s:%d: '%.*s' is no word of an STL file", path, line,
+                (int)(length < 40 ? length : 40), at);
         }
     }
-    return n_corner || !ended ? fail_format("%s:%d: the file is cut off: no 'endsolid'", path, line) : NULL;
+    return n_corner || !ended ? fail_format("%s:%d: the file is cut off: no 'endsolid'", path, line)
+                              : NULL;
 }
 
-/* Whether it holds nothing but text where a binary file has its count: of another format, or with something before `solid`. */
+/* Whether it holds nothing but text where a binary file has its count: of another format, or with
+ * something before `solid`. */
 static bool is_text(const unsigned char *data, size_t size)
 {
     for (size_t k = 0; k < size && k < HEADER; k++)
@@ -140,18 +152,22 @@ static bool is_text(const unsigned char *data, size_t size)
 
 static char *read_soup(const char *path, const unsigned char *data, size_t size, struct soup *soup)
 {
-    if (size >= HEADER && size == HEADER + (size_t)u32_at(data + 80) * RECORD) return read_binary(path, data, soup);
-    if (size >= 5 && strncasecmp((const char *)data, "solid", 5) == 0 && strlen((const char *)data) == size)
+    if (size >= HEADER && size == HEADER + (size_t)u32_at(data + 80) * RECORD)
+        return read_binary(path, data, soup);
+    if (size >= 5 && strncasecmp((const char *)data, "solid", 5) == 0 &&
+        strlen((const char *)data) == size)
         return read_ascii(path, (const char *)data, soup);
     if (size > 0 && is_text(data, size) && strncasecmp((const char *)data, "solid", 5) != 0)
         return fail_format("%s: no STL file: text that does not begin with 'solid'", path);
-    if (size < HEADER) return fail_format("%s: neither ASCII nor binary STL: %zu bytes", path, size);
+    if (size < HEADER)
+        return fail_format("%s: neither ASCII nor binary STL: %zu bytes", path, size);
     size_t needed = HEADER + (size_t)u32_at(data + 80) * RECORD;
-    return fail_format(
-        "%s: %s: %u triangles need %zu bytes, the file has %zu", path, size < needed ? "cut off" : "no STL file", u32_at(data + 80), needed, size);
+    return fail_format("%s: %s: %u triangles need %zu bytes, the file has %zu", path,
+        size < needed ? "cut off" : "no STL file", u32_at(data + 80), needed, size);
 }
 
-/* Vertices in cells of a hash table: two corners within `near` of each other in each coordinate are one. */
+/* Vertices in cells of a hash table: two corners within `near` of each other in each coordinate are
+ * one. */
 struct weld {
     double near;
     size_t mask;
@@ -160,7 +176,8 @@ struct weld {
 
 static size_t weld_hash(const struct weld *weld, int64_t i, int64_t j, int64_t k)
 {
-    uint64_t h = (uint64_t)i * 0x9e3779b97f4a7c15u ^ (uint64_t)j * 0xbf58476d1ce4e5b9u ^ (uint64_t)k * 0x94d049bb133111ebu;
+    uint64_t h = (uint64_t)i * 0x9e3779b97f4a7c15u ^ (uint64_t)j * 0xbf58476d1ce4e5b9u ^
+                 (uint64_t)k * 0x94d049bb133111ebu;
     return (size_t)(h ^ h >> 31) & weld->mask;
 }
 
@@ -177,7 +194,9 @@ static int weld_vertex(struct weld *weld, struct stl *stl, const double x[3])
             for (int64_t k = from[2]; k <= to[2]; k++)
                 for (int v = weld->head[weld_hash(weld, i, j, k)]; v >= 0; v = weld->next[v]) {
                     const double *y = stl->vertex + 3 * v;
-                    if (fabs(x[0] - y[0]) <= weld->near && fabs(x[1] - y[1]) <= weld->near && fabs(x[2] - y[2]) <= weld->near) return v;
+                    if (fabs(x[0] - y[0]) <= weld->near && fabs(x[1] - y[1]) <= weld->near &&
+                        fabs(x[2] - y[2]) <= weld->near)
+                        return v;
                 }
     int v = stl->n_vertex++;
     int64_t cell[3];
@@ -204,20 +223,23 @@ static bool is_flat(const struct stl *stl, const int v[3], double near)
         ab[a] = stl->vertex[3 * v[1] + a] - stl->vertex[3 * v[0] + a];
         ac[a] = stl->vertex[3 * v[2] + a] - stl->vertex[3 * v[0] + a];
     }
-    double twice_area = hypot(hypot(ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2]), ab[0] * ac[1] - ab[1] * ac[0]);
+    double twice_area = hypot(hypot(ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2]),
+        ab[0] * ac[1] - ab[1] * ac[0]);
     return twice_area < near * longest;
 }
 
 static void weld_soup(struct stl *stl, const struct soup *soup)
 {
-    double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, extent = 0, far = 1e-30;
+    double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL},
+           extent = 0, far = 1e-30;
     for (size_t k = 0; k < 9 * soup->n; k++) {
         low[k % 3] = fmin(low[k % 3], soup->corner[k]);
         high[k % 3] = fmax(high[k % 3], soup->corner[k]);
         far = fmax(far, fabs(soup->corner[k]));
     }
     for (int a = 0; a < 3; a++) extent = fmax(extent, high[a] - low[a]);
-    struct weld weld = {.near = fmax(1e-6 * extent, 1e-15 * far), .mask = 1}; /* the latter keeps cell numbers within 64 bits */
+    /* the latter keeps cell numbers within 64 bits */
+    struct weld weld = {.near = fmax(1e-6 * extent, 1e-15 * far), .mask = 1};
     while (weld.mask < 3 * soup->n) weld.mask *= 2;
     weld.head = fail_alloc(weld.mask * sizeof *weld.head);
     weld.next = fail_alloc(3 * soup->n * sizeof *weld.next);
@@ -235,7 +257,8 @@ static void weld_soup(struct stl *stl, const struct soup *soup)
     free(weld.next);
 }
 
-/* Edge with its two vertices in ascending order; `way` is +1 where the triangle runs from the lower to the higher. */
+/* Edge with its two vertices in ascending order; `way` is +1 where the triangle runs from the lower
+ * to the higher. */
 struct use {
     int low, high, at, way;
 };
@@ -248,8 +271,8 @@ static int compare_uses(const void *a, const void *b)
     return (p->at > q->at) - (p->at < q->at);
 }
 
-/* Equal edges are neighbours after sorting. First edge[k] is the place of the edge's first use, then (ascending, so that this one has its number
- * already) that one's number. */
+/* Equal edges are neighbours after sorting. First edge[k] is the place of the edge's first use,
+ * then (ascending, so that this one has its number already) that one's number. */
 static void number_edges(struct stl *stl)
 {
     int n = 3 * stl->n_triangle;
@@ -257,18 +280,21 @@ static void number_edges(struct stl *stl)
     stl->edge = fail_alloc((size_t)n * sizeof *stl->edge);
     for (int k = 0; k < n; k++) {
         int p = stl->triangle[k], q = stl->triangle[k - k % 3 + (k % 3 + 1) % 3];
-        use[k] = (struct use){.low = p < q ? p : q, .high = p < q ? q : p, .at = k, .way = p < q ? 1 : -1};
+        use[k] = (struct use){
+            .low = p < q ? p : q, .high = p < q ? q : p, .at = k, .way = p < q ? 1 : -1};
     }
     qsort(use, (size_t)n, sizeof *use, compare_uses);
     for (int k = 0, end; k < n; k = end) {
         int sum = 0;
-        for (end = k; end < n && use[end].low == use[k].low && use[end].high == use[k].high; end++) {
+        for (end = k; end < n && use[end].low == use[k].low && use[end].high == use[k].high;
+             end++) {
             sum += use[end].way;
             stl->edge[use[end].at] = use[k].at;
         }
         stl->n_open += sum != 0;
     }
-    for (int k = 0; k < n; k++) stl->edge[k] = stl->edge[k] == k ? stl->n_edge++ : stl->edge[stl->edge[k]];
+    for (int k = 0; k < n; k++)
+        stl->edge[k] = stl->edge[k] == k ? stl->n_edge++ : stl->edge[stl->edge[k]];
     free(use);
 }
 
@@ -281,7 +307,8 @@ struct stl *stl_read(const char *path, double scale, char **error)
     *error = read_soup(path, data, size, &soup);
     free(data);
     if (!*error && soup.n == 0) *error = fail_format("%s: no triangle", path);
-    if (!*error && soup.n > INT32_MAX / 9) *error = fail_format("%s: %zu triangles are more than one surface can hold", path, soup.n);
+    if (!*error && soup.n > INT32_MAX / 9)
+        *error = fail_format("%s: %zu triangles are more than one surface can hold", path, soup.n);
     if (*error) {
         free(soup.corner);
         return NULL;

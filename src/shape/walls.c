@@ -32,7 +32,8 @@ void walls_axes(const double normal[3], double u[3], double v[3])
 {
     double m[3] = {normal[0], normal[1], normal[2]};
     normalise(m);
-    int out = 2; /* left out unless clearly not the nearest: 1e-9 keeps a rounded diagonal in one class */
+    /* left out unless clearly not the nearest: 1e-9 keeps a rounded diagonal in one class */
+    int out = 2;
     for (int k = 1; k >= 0; k--)
         if (fabs(m[k]) > fabs(m[out]) + 1e-9) out = k;
     int first = out == 0 ? 1 : 0, second = out == 2 ? 1 : 2;
@@ -49,7 +50,8 @@ static double *add_primitive(struct walls *walls, int w, int kind)
     size_t k = (size_t)walls->n_primitive++;
     if ((k & (k - 1)) == 0) { /* full at every power of two */
         size_t room = k ? 2 * k : 1;
-        walls->primitive = fail_realloc(walls->primitive, room * WALL_PRIMITIVE_WIDTH * sizeof(double));
+        walls->primitive =
+            fail_realloc(walls->primitive, room * WALL_PRIMITIVE_WIDTH * sizeof(double));
         walls->wall_of = fail_realloc(walls->wall_of, room * sizeof(int));
         walls->low = fail_realloc(walls->low, room * 3 * sizeof(double));
         walls->high = fail_realloc(walls->high, room * 3 * sizeof(double));
@@ -71,7 +73,8 @@ static double *add_primitive(struct walls *walls, int w, int kind)
 /* Grows the bounds of the newest primitive around the point; the first point starts them. */
 static void bound_last(struct walls *walls, const double p[3], bool is_first)
 {
-    double *low = walls->low + 3 * (walls->n_primitive - 1), *high = walls->high + 3 * (walls->n_primitive - 1);
+    double *low = walls->low + 3 * (walls->n_primitive - 1),
+           *high = walls->high + 3 * (walls->n_primitive - 1);
     for (int a = 0; a < 3; a++) {
         low[a] = is_first ? p[a] : fmin(low[a], p[a]);
         high[a] = is_first ? p[a] : fmax(high[a], p[a]);
@@ -121,12 +124,15 @@ static void add_cylinder(struct walls *walls, int w, const struct wall *wall)
     for (int k = 0; k < 2; k++)
         for (int sign = -1; sign <= 1; sign += 2) {
             double p[3]; /* a rim reaches radius sqrt(1 - axis_a^2) along coordinate a */
-            for (int a = 0; a < 3; a++) p[a] = (k ? wall->to[a] : wall->from[a]) + sign * wall->radius * sqrt(fmax(0, 1 - row[3 + a] * row[3 + a]));
+            for (int a = 0; a < 3; a++)
+                p[a] = (k ? wall->to[a] : wall->from[a]) +
+                       sign * wall->radius * sqrt(fmax(0, 1 - row[3 + a] * row[3 + a]));
             bound_last(walls, p, k == 0 && sign < 0);
         }
 }
 
-/* Edges of the mesh keep their numbers, vertices follow; both go behind the features of the meshes before. */
+/* Edges of the mesh keep their numbers, vertices follow; both go behind the features of the meshes
+ * before. */
 static void add_mesh(struct walls *walls, int w, const struct stl *stl)
 {
     for (int t = 0; t < stl->n_triangle; t++) {
@@ -144,7 +150,8 @@ static void add_mesh(struct walls *walls, int w, const struct stl *stl)
     walls->n_dropped += stl->n_dropped;
 }
 
-static void add_stl(struct walls *walls, int w, const struct scene *scene, struct scene_errors *errors)
+static void add_stl(
+    struct walls *walls, int w, const struct scene *scene, struct scene_errors *errors)
 {
     const struct wall *wall = scene->wall + w;
     char *text = NULL;
@@ -155,7 +162,8 @@ static void add_stl(struct walls *walls, int w, const struct scene *scene, struc
         return;
     }
     if (stl->n_dropped)
-        fail_warn("%s: %d of %d triangles have no area and are left out", wall->stl, stl->n_dropped, stl->n_dropped + stl->n_triangle);
+        fail_warn("%s: %d of %d triangles have no area and are left out", wall->stl, stl->n_dropped,
+            stl->n_dropped + stl->n_triangle);
     add_mesh(walls, w, stl);
     stl_free(stl);
 }
@@ -169,7 +177,8 @@ static void share_features(struct walls *walls)
         if (walls->features[k] >= 0) first[walls->features[k] + 2]++;
     for (int f = 0; f < walls->n_feature; f++) first[f + 2] += first[f + 1];
     walls->share = fail_alloc((size_t)first[walls->n_feature + 1] * sizeof(int));
-    for (int k = 0; k < n_row; k++) /* while filling, first[f + 1] runs from the start of f to its end */
+    /* while filling, first[f + 1] runs from the start of f to its end */
+    for (int k = 0; k < n_row; k++)
         if (walls->features[k] >= 0) walls->share[first[walls->features[k] + 1]++] = k / 6;
 }
 
@@ -212,7 +221,8 @@ struct walls *walls_create(const struct scene *scene, struct scene_errors *error
         }
         walls->first[w + 1] = walls->n_primitive;
         bool swings = !is_zero(wall->amplitude) && (wall->frequency > 0 || wall->frequency < 0);
-        walls->moves[w] = !is_zero(wall->velocity) || swings || wall->rotation_rate > 0 || wall->rotation_rate < 0;
+        walls->moves[w] = !is_zero(wall->velocity) || swings || wall->rotation_rate > 0 ||
+                          wall->rotation_rate < 0;
         walls->n_moving += walls->moves[w];
         bound_wall(walls, w);
     }

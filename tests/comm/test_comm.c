@@ -1,4 +1,5 @@
-/* Collectives against closed forms, the node's ranks, and what Open MPI is told before it starts. */
+/* Collectives against closed forms, the node's ranks, and what Open MPI is told before it
+ * starts. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -30,7 +31,8 @@ static void bytes(const struct comm *comm)
     char mine[3] = {(char)comm->rank, 'x', (char)(7 * comm->rank)};
     char *all = malloc(3 * (size_t)comm->n_rank);
     comm_gather(comm, mine, all, sizeof mine);
-    for (int r = 0; r < comm->n_rank; r++) CHECK(all[3 * r] == (char)r && all[3 * r + 1] == 'x' && all[3 * r + 2] == (char)(7 * r));
+    for (int r = 0; r < comm->n_rank; r++)
+        CHECK(all[3 * r] == (char)r && all[3 * r + 1] == 'x' && all[3 * r + 2] == (char)(7 * r));
     free(all);
     int last = comm->n_rank - 1;
     char text[32] = "";
@@ -43,7 +45,8 @@ static void bytes(const struct comm *comm)
 static void node(const struct comm *comm)
 {
     unsigned char bits[16] = {0};
-    CHECK(comm->n_node_rank >= 1 && comm->n_node_rank <= comm->n_rank && comm->node_rank >= 0 && comm->node_rank < comm->n_node_rank);
+    CHECK(comm->n_node_rank >= 1 && comm->n_node_rank <= comm->n_rank && comm->node_rank >= 0 &&
+          comm->node_rank < comm->n_node_rank);
     bits[comm->node_rank] = (unsigned char)(1 + comm->node_rank);
     comm_node_or(comm, bits, sizeof bits);
     for (int r = 0; r < 16; r++) CHECK(bits[r] == (r < comm->n_node_rank ? 1 + r : 0));
@@ -51,7 +54,8 @@ static void node(const struct comm *comm)
     comm_barrier(comm);
 }
 
-/* Argument: what OMPI_MCA_io has to be after start, that is ^ompio unless the user has set something. */
+/* Argument: what OMPI_MCA_io has to be after start, that is ^ompio unless the user has set
+ * something. */
 int main(int argc, char **argv)
 {
     struct comm *comm = comm_create(&argc, &argv);

@@ -1,5 +1,6 @@
-/* Every ghost is a function of its global id after each exchange: blocking and persistent, with self-neighbours, empty ranks, large and small
- * messages, two halos at once, and ranks that dawdle. */
+/* Every ghost is a function of its global id after each exchange: blocking and persistent, with
+ * self-neighbours, empty ranks, large and small messages, two halos at once, and ranks that
+ * dawdle. */
 #include <sched.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -22,8 +23,9 @@ static double value_of(int64_t gid, int round)
     return (double)(mpi_check_random((uint64_t)gid) >> 12) + 0.25 * round;
 }
 
-/* Who sends how much: the same on every rank. `kind` 0: nobody anything; 1: each to itself only; 2: pseudo-random, about half of the pairs, the
- * last rank of several neither sends nor receives, one message far above the eager limit; 3: all to all. */
+/* Who sends how much: the same on every rank. `kind` 0: nobody anything; 1: each to itself only; 2:
+ * pseudo-random, about half of the pairs, the last rank of several neither sends nor receives, one
+ * message far above the eager limit; 3: all to all. */
 static int64_t count_of(int kind, int from, int to, int n_rank)
 {
     uint64_t h = mpi_check_random((uint64_t)(from * 1000 + to));
@@ -43,12 +45,17 @@ static struct halo *make(const struct comm *comm, int kind)
     struct halo *halo = halo_create(comm, to);
     for (int r = 0; r < n; r++) {
         int64_t from = count_of(kind, r, comm->rank, n);
-        if (to[r] > 0) CHECK(halo->send_rank[n_send] == r && halo->send_begin[n_send + 1] - halo->send_begin[n_send] == to[r]);
-        if (from > 0) CHECK(halo->recv_rank[n_recv] == r && halo->recv_begin[n_recv + 1] - halo->recv_begin[n_recv] == from);
+        if (to[r] > 0)
+            CHECK(halo->send_rank[n_send] == r &&
+                  halo->send_begin[n_send + 1] - halo->send_begin[n_send] == to[r]);
+        if (from > 0)
+            CHECK(halo->recv_rank[n_recv] == r &&
+                  halo->recv_begin[n_recv + 1] - halo->recv_begin[n_recv] == from);
         n_send += to[r] > 0;
         n_recv += from > 0;
     }
-    CHECK(halo->n_send == n_send && halo->n_recv == n_recv && halo->send_begin[0] == 0 && halo->recv_begin[0] == 0);
+    CHECK(halo->n_send == n_send && halo->n_recv == n_recv && halo->send_begin[0] == 0 &&
+          halo->recv_begin[0] == 0);
     free(to);
     return halo;
 }
@@ -67,7 +74,8 @@ static void check(const struct halo *halo, const struct record *recv, int round)
     for (int k = 0; k < halo->n_recv; k++)
         for (int64_t i = halo->recv_begin[k]; i < halo->recv_begin[k + 1]; i++) {
             int64_t gid = gid_of(halo->recv_rank[k], halo->comm->rank, i - halo->recv_begin[k]);
-            CHECK(recv[i].gid == gid && recv[i].value[0] == value_of(gid, round) && recv[i].value[1] == -value_of(gid, round));
+            CHECK(recv[i].gid == gid && recv[i].value[0] == value_of(gid, round) &&
+                  recv[i].value[1] == -value_of(gid, round));
         }
 }
 
@@ -85,9 +93,12 @@ static void wait_for(struct halo *halo)
 static void one_kind(const struct comm *comm, int kind, int n_round)
 {
     struct halo *halo = make(comm, kind);
-    int64_t n_send = halo->send_begin[halo->n_send], n_recv = halo->recv_begin[halo->n_recv], sent = 0;
-    struct record *send = calloc((size_t)n_send + 1, sizeof *send), *recv = calloc((size_t)n_recv + 1, sizeof *recv);
-    struct record *once = calloc((size_t)n_recv + 1, sizeof *once), *aside = calloc((size_t)n_send + 1, sizeof *aside);
+    int64_t n_send = halo->send_begin[halo->n_send], n_recv = halo->recv_begin[halo->n_recv],
+            sent = 0;
+    struct record *send = calloc((size_t)n_send + 1, sizeof *send),
+                  *recv = calloc((size_t)n_recv + 1, sizeof *recv);
+    struct record *once = calloc((size_t)n_recv + 1, sizeof *once),
+                  *aside = calloc((size_t)n_send + 1, sizeof *aside);
 
     fill(halo, send, -1);
     halo_exchange(halo, send, recv, sizeof *send);

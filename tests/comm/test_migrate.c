@@ -1,4 +1,5 @@
-/* Every byte arrives where it should, for random sizes with many zeros. Built twice: as it is, and with messages cut at 1000 bytes. */
+/* Every byte arrives where it should, for random sizes with many zeros. Built twice: as it is, and
+ * with messages cut at 1000 bytes. */
 #include <stdlib.h>
 
 #include "../mpi_check.h"
@@ -14,13 +15,15 @@ static int64_t size_of(int round, int from, int to)
 
 static unsigned char byte_of(int round, int from, int to, int64_t i)
 {
-    return (unsigned char)mpi_check_random((uint64_t)((((int64_t)round * 64 + from) * 64 + to) * 100000 + i));
+    return (unsigned char)mpi_check_random(
+        (uint64_t)((((int64_t)round * 64 + from) * 64 + to) * 100000 + i));
 }
 
 static void one_round(const struct comm *comm, int round)
 {
     int n = comm->n_rank, self = comm->rank;
-    int64_t *to = calloc((size_t)n, sizeof *to), *from = calloc((size_t)n, sizeof *from), sum = 0, at = 0;
+    int64_t *to = calloc((size_t)n, sizeof *to), *from = calloc((size_t)n, sizeof *from), sum = 0,
+            at = 0;
     for (int r = 0; r < n; r++) sum += to[r] = size_of(round, self, r);
     unsigned char *send = malloc((size_t)sum + 1);
     for (int r = 0; r < n; r++)

@@ -1,5 +1,6 @@
-/* Runs into one kind of trouble, named by the second argument, each of which has to end with its message and exit code 4. Run by test_refusals.
- * Arguments: alone (without MPI) or ranks, the trouble, a choice of device. */
+/* Runs into one kind of trouble, named by the second argument, each of which has to end with its
+ * message and exit code 4. Run by test_refusals. Arguments: alone (without MPI) or ranks, the
+ * trouble, a choice of device. */
 #define _GNU_SOURCE /* RTLD_NEXT */
 #include <dlfcn.h>
 #include <stdlib.h>
@@ -10,19 +11,23 @@
 
 static bool hide_fp64;
 
-/* Stands before the OpenCL library's own: devices without double precision, which this machine may not have. */
-cl_int clGetDeviceInfo(cl_device_id id, cl_device_info what, size_t size, void *value, size_t *size_out)
+/* Stands before the OpenCL library's own: devices without double precision, which this machine may
+ * not have. */
+cl_int clGetDeviceInfo(
+    cl_device_id id, cl_device_info what, size_t size, void *value, size_t *size_out)
 {
     static cl_int (*real_one)(cl_device_id, cl_device_info, size_t, void *, size_t *);
     if (!real_one) *(void **)&real_one = dlsym(RTLD_NEXT, "clGetDeviceInfo");
     cl_int code = real_one(id, what, size, value, size_out);
-    if (hide_fp64 && what == CL_DEVICE_DOUBLE_FP_CONFIG && value && code == CL_SUCCESS) memset(value, 0, size);
+    if (hide_fp64 && what == CL_DEVICE_DOUBLE_FP_CONFIG && value && code == CL_SUCCESS)
+        memset(value, 0, size);
     return code;
 }
 
 static void use(const struct comm *comm, struct device *dev, const char *what)
 {
-    static const char *const sources[] = {"scale.cl", NULL}, *const broken[] = {"scale.cl", "broken.cl", NULL},
+    static const char *const sources[] = {"scale.cl", NULL},
+                             *const broken[] = {"scale.cl", "broken.cl", NULL},
                              *const missing[] = {"nowhere.cl", NULL};
     const char *options = "-DWITH_SHIFT=1 -DREAL_IS_FLOAT=1";
     if (!strcmp(what, "build")) program_build(dev, comm, "refused", options, broken);

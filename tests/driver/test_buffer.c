@@ -107,14 +107,16 @@ static void memory_by_name(void **state)
     assert_int_equal(table.row[0].bytes, 1024 + 100096);
     buffer_free(dev, &b);
     for (int i = 0; i < dev->memory.n; i++)
-        if (!strcmp(dev->memory.row[i].name, "twins")) assert_int_equal(dev->memory.row[i].bytes, 1024);
+        if (!strcmp(dev->memory.row[i].name, "twins"))
+            assert_int_equal(dev->memory.row[i].bytes, 1024);
     buffer_free(dev, &a);
     int64_t sum = 0;
     for (int i = 0; i < dev->memory.n; i++) sum += dev->memory.row[i].bytes;
     assert_int_equal(sum, dev->counters.now_bytes);
 }
 
-/* As an exchange does it: staging to device on one queue, back on the other, ordered by events, also where there is nothing to copy. */
+/* As an exchange does it: staging to device on one queue, back on the other, ordered by events,
+ * also where there is nothing to copy. */
 static void staging(void **state)
 {
     struct buffer host, b;
@@ -146,8 +148,8 @@ static void staging(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(growth), cmocka_unit_test(poison), cmocka_unit_test(copies), cmocka_unit_test(memory_by_name), cmocka_unit_test(staging)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(growth), cmocka_unit_test(poison),
+        cmocka_unit_test(copies), cmocka_unit_test(memory_by_name), cmocka_unit_test(staging)};
     dev = device_open(NULL, NULL, false, false);
     int failed = cmocka_run_group_tests_name("buffer", tests, NULL, NULL);
     device_free(dev);

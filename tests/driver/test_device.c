@@ -1,4 +1,5 @@
-/* Opening the device that is here, alone and by several ranks; pocl keeps to this rank's share of the cores. */
+/* Opening the device that is here, alone and by several ranks; pocl keeps to this rank's share of
+ * the cores. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,10 +8,13 @@
 
 static void properties(const struct device *dev)
 {
-    CHECK(dev->name[0] && dev->platform_name[0] && dev->platform_version[0] && dev->driver[0] && dev->version[0] && dev->opencl_c[0]);
+    CHECK(dev->name[0] && dev->platform_name[0] && dev->platform_version[0] && dev->driver[0] &&
+          dev->version[0] && dev->opencl_c[0]);
     CHECK(dev->global_mem > 0 && dev->max_alloc > 0 && dev->max_alloc <= dev->global_mem);
-    CHECK(dev->max_group >= 64 && dev->local_mem >= 1024 && dev->compute_units >= 1 && dev->n_share >= 1);
-    CHECK(dev->context && dev->compute && dev->copy && dev->compute != dev->copy && dev->counters.n_alloc == 0);
+    CHECK(dev->max_group >= 64 && dev->local_mem >= 1024 && dev->compute_units >= 1 &&
+          dev->n_share >= 1);
+    CHECK(dev->context && dev->compute && dev->copy && dev->compute != dev->copy &&
+          dev->counters.n_alloc == 0);
 }
 
 /* Events across the two queues, as an exchange uses them. */
@@ -35,7 +39,8 @@ static void list(const struct device *dev)
     FILE *file = open_memstream(&text, &bytes);
     CHECK(device_list(2, file) >= 1);
     fclose(file);
-    CHECK(strstr(text, dev->name) && strstr(text, dev->platform_name) && strstr(text, "rank 0 of a node takes ") && strstr(text, "rank 1 of"));
+    CHECK(strstr(text, dev->name) && strstr(text, dev->platform_name) &&
+          strstr(text, "rank 0 of a node takes ") && strstr(text, "rank 1 of"));
     CHECK(!strstr(text, "rank 2 of"));
     free(text);
 }

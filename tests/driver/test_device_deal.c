@@ -8,24 +8,28 @@
 
 #include "device/device_find.h"
 
-static struct device_entry entry(
-    int platform, int index, const char *platform_name, const char *name, cl_device_type type, bool fp64, const char *bus)
+static struct device_entry entry(int platform, int index, const char *platform_name,
+    const char *name, cl_device_type type, bool fp64, const char *bus)
 {
-    struct device_entry e = {.platform_index = platform, .device_index = index, .info = {.type = type, .fp64 = fp64}};
+    struct device_entry e = {
+        .platform_index = platform, .device_index = index, .info = {.type = type, .fp64 = fp64}};
     strcpy(e.info.platform_name, platform_name);
     strcpy(e.info.name, name);
     strcpy(e.bus, bus);
     return e;
 }
 
-/* A node with pocl, an integrated GPU without fp64, and two GPUs of which one shows under a second driver. Not in the order of their addresses. */
+/* A node with pocl, an integrated GPU without fp64, and two GPUs of which one shows under a second
+ * driver. Not in the order of their addresses. */
 enum { POCL, INTEGRATED, TESLA_2, TESLA_1, TESLA_2_AGAIN, N_ENTRY };
 
 static void machine(struct device_entry e[N_ENTRY])
 {
-    e[POCL] = entry(0, 0, "Portable Computing Language", "pthread-znver", CL_DEVICE_TYPE_CPU, true, "");
+    e[POCL] =
+        entry(0, 0, "Portable Computing Language", "pthread-znver", CL_DEVICE_TYPE_CPU, true, "");
     strcpy(e[POCL].info.platform_version, "OpenCL 3.0 PoCL 3.1");
-    e[INTEGRATED] = entry(1, 0, "Intel(R) OpenCL Graphics", "Iris Xe", CL_DEVICE_TYPE_GPU, false, "0000:00:02.0");
+    e[INTEGRATED] = entry(
+        1, 0, "Intel(R) OpenCL Graphics", "Iris Xe", CL_DEVICE_TYPE_GPU, false, "0000:00:02.0");
     e[TESLA_2] = entry(2, 0, "NVIDIA CUDA", "Tesla T4", CL_DEVICE_TYPE_GPU, true, "0000:82:00.0");
     e[TESLA_1] = entry(2, 1, "NVIDIA CUDA", "Tesla T4", CL_DEVICE_TYPE_GPU, true, "0000:17:00.0");
     e[TESLA_2_AGAIN] = entry(3, 0, "rusticl", "NV164", CL_DEVICE_TYPE_GPU, true, "0000:82:00.0");
@@ -43,7 +47,8 @@ static void expect(const char *choice, bool need_fp64, int n, const int *want)
 static void by_itself(void **state)
 {
     (void)state;
-    expect(NULL, true, 2, (int[]){TESLA_1, TESLA_2}); /* by address; the integrated one cannot, pocl is never taken beside GPUs */
+    /* by address; the integrated one cannot, pocl is never taken beside GPUs */
+    expect(NULL, true, 2, (int[]){TESLA_1, TESLA_2});
     expect(NULL, false, 3, (int[]){INTEGRATED, TESLA_1, TESLA_2});
 }
 
@@ -58,7 +63,8 @@ static void named(void **state)
     expect("nvidia:1", true, 1, (int[]){TESLA_1});
     expect("2:T4", true, 2, (int[]){TESLA_1, TESLA_2});
     expect("rusticl:", true, 1, (int[]){TESLA_2_AGAIN});
-    expect("intel:xe", true, 1, (int[]){INTEGRATED}); /* no fp64 there: device_open refuses it, it is not exchanged for another */
+    /* no fp64 there: device_open refuses it, it is not exchanged for another */
+    expect("intel:xe", true, 1, (int[]){INTEGRATED});
     expect("nvidia:2", true, 0, NULL);
     expect("nvidia:Tesla K80", true, 0, NULL);
     expect("7", true, 0, NULL);
@@ -80,6 +86,7 @@ static void unusable(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(by_itself), cmocka_unit_test(named), cmocka_unit_test(unusable)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(by_itself), cmocka_unit_test(named), cmocka_unit_test(unusable)};
     return cmocka_run_group_tests_name("device_deal", tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* Programs from joined sources, arguments by name, padded ranges, buffers that grow and swap under a launch. Argument: folder of the test kernels. */
+/* Programs from joined sources, arguments by name, padded ranges, buffers that grow and swap under
+ * a launch. Argument: folder of the test kernels. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -91,7 +92,8 @@ static void by_name(void **state)
         launch_check(launch);
         launch_run(launch, dev->compute, N, 0, NULL, NULL);
         buffer_read(dev, &y, 0, N * size, single ? (void *)f : (void *)d);
-        for (int i = 0; i < N; i++) assert_true((single ? (double)f[i] : d[i]) == 0.5 * i + 1e6 + (shifted ? i : 0));
+        for (int i = 0; i < N; i++)
+            assert_true((single ? (double)f[i] : d[i]) == 0.5 * i + 1e6 + (shifted ? i : 0));
 
         launch_free(launch);
         buffer_free(dev, &x);
@@ -113,7 +115,8 @@ static void padded(void **state)
     int sizes = 0;
     for (int64_t n = 1; n < 3000000; n += 17) {
         size_t global = launch_padded(n, 64);
-        assert_true(global % 64 == 0 && (int64_t)global >= n && (int64_t)global < n + 64 + n / 63 && global >= last);
+        assert_true(global % 64 == 0 && (int64_t)global >= n && (int64_t)global < n + 64 + n / 63 &&
+                    global >= last);
         sizes += global != last;
         last = global;
     }
@@ -165,11 +168,13 @@ static void grows_and_swaps(void **state)
     program_free(program);
 }
 
-/* Nothing to do still orders the queues; repeated launches allocate and copy nothing; with profiling there are times. */
+/* Nothing to do still orders the queues; repeated launches allocate and copy nothing; with
+ * profiling there are times. */
 static void empty_and_counted(void **state)
 {
     struct device *timed = device_open(NULL, NULL, false, true);
-    struct program *program = program_build(timed, NULL, "test", "-DWITH_SHIFT=0 -DREAL_IS_FLOAT=1", sources);
+    struct program *program =
+        program_build(timed, NULL, "test", "-DWITH_SHIFT=0 -DREAL_IS_FLOAT=1", sources);
     struct launch *launch = launch_create(program, "count");
     struct buffer seen;
     cl_event first, second;
@@ -203,8 +208,9 @@ static void empty_and_counted(void **state)
 
 int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(joined), cmocka_unit_test(embedded), cmocka_unit_test(by_name), cmocka_unit_test(padded),
-        cmocka_unit_test(grows_and_swaps), cmocka_unit_test(empty_and_counted)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(joined), cmocka_unit_test(embedded),
+        cmocka_unit_test(by_name), cmocka_unit_test(padded), cmocka_unit_test(grows_and_swaps),
+        cmocka_unit_test(empty_and_counted)};
     if (argc != 2) return 2;
     setenv("DEMOCLES_KERNELS", argv[1], 1);
     dev = device_open(NULL, NULL, false, false);

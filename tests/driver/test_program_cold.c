@@ -1,5 +1,5 @@
-/* Many ranks build the same program and launch it the first time at once, with an empty kernel cache: the race of pocl before 6.0. Argument:
- * kernels' folder. */
+/* Many ranks build the same program and launch it the first time at once, with an empty kernel
+ * cache: the race of pocl before 6.0. Argument: kernels' folder. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,7 +21,8 @@ int main(int argc, char **argv)
     struct device *dev = device_open(comm, NULL, false, false);
     for (int k = 0; k < 4; k++) {
         char options[64];
-        snprintf(options, sizeof options, "-DWITH_SHIFT=%d -DREAL_IS_FLOAT=1 -DVARIANT=%d", k % 2, k);
+        snprintf(
+            options, sizeof options, "-DWITH_SHIFT=%d -DREAL_IS_FLOAT=1 -DVARIANT=%d", k % 2, k);
         struct program *program = program_build(dev, comm, "cold", options, sources);
         struct launch *launch = launch_create(program, "count");
         struct buffer seen;

@@ -29,13 +29,14 @@ void account_random(struct account_state *a, bool is_float)
         a->radius[i] = 0.01 * (1.5 + uniform(&key));
         a->inverse_m[i] = 1 / ldexp(1.5 + uniform(&key), -(int)(mpi_check_random(key++) % 30));
         for (int k = 0; k < LEDGER_WIDTH; k++) a->at_wall[i][k] = spread(&key, 60);
-        double *number[] = {
-            a->x[i], a->x[i] + 1, a->x[i] + 2, a->v[i], a->v[i] + 1, a->v[i] + 2, a->w[i], a->w[i] + 1, a->w[i] + 2, &a->radius[i], &a->inverse_m[i]};
+        double *number[] = {a->x[i], a->x[i] + 1, a->x[i] + 2, a->v[i], a->v[i] + 1, a->v[i] + 2,
+            a->w[i], a->w[i] + 1, a->w[i] + 2, &a->radius[i], &a->inverse_m[i]};
         for (int k = 0; k < 11 && is_float; k++) *number[k] = (double)(float)*number[k];
     }
     for (int p = 0; p < N_PAIR; p++) {
         a->lower[p] = (int)(mpi_check_random(key++) % (N_ELEMENT - 1));
-        a->upper[p] = a->lower[p] + 1 + (int)(mpi_check_random(key++) % (uint64_t)(N_ELEMENT - 1 - a->lower[p]));
+        a->upper[p] = a->lower[p] + 1 +
+                      (int)(mpi_check_random(key++) % (uint64_t)(N_ELEMENT - 1 - a->lower[p]));
         for (int k = 0; k < LEDGER_WIDTH; k++) a->pair[p][k] = spread(&key, 60);
     }
     for (int k = 0; k < 3; k++) {
@@ -72,7 +73,8 @@ void account_write_elements(struct sim *s, const struct account_state *a)
 {
     struct particle_run *run = s->particle;
     const struct features *f = &run->features;
-    int n_owned, *local = local_numbers(a, s->comm->n_rank > 1 ? s->comm->rank : 0, s->comm->n_rank, &n_owned);
+    int n_owned, *local = local_numbers(
+                     a, s->comm->n_rank > 1 ? s->comm->rank : 0, s->comm->n_rank, &n_owned);
     size_t bytes = 4 * particles_preal(f) + (f->spin ? 8 : 4) * particles_real(f);
     char *state = fail_alloc(N_ELEMENT * bytes);
     int64_t *gid = fail_alloc(N_ELEMENT * sizeof *gid);
@@ -101,16 +103,20 @@ static void write_pairs(struct sim *s, const struct account_state *a, int rank, 
     struct particle_run *run = s->particle;
     struct pair_list *l = &run->pairs->now;
     int n_owned, *local = local_numbers(a, rank, n_rank, &n_owned), n = 0;
-    int *i = fail_alloc((N_PAIR + PAIR_GAP) * sizeof *i), *j = fail_alloc((N_PAIR + PAIR_GAP) * sizeof *j);
+    int *i = fail_alloc((N_PAIR + PAIR_GAP) * sizeof *i),
+        *j = fail_alloc((N_PAIR + PAIR_GAP) * sizeof *j);
     double *ledger = fail_alloc((N_PAIR + PAIR_GAP) * LEDGER_WIDTH * sizeof *ledger);
     l->n_owned = l->n_lower = n_owned;
     l->capacity = N_PAIR + PAIR_GAP;
-    for (int k = 0; k < (N_PAIR + PAIR_GAP) * LEDGER_WIDTH; k++) ledger[k] = NAN; /* between and behind the pairs */
+    /* between and behind the pairs */
+    for (int k = 0; k < (N_PAIR + PAIR_GAP) * LEDGER_WIDTH; k++) ledger[k] = NAN;
     for (int boundary = 0; boundary < 2; boundary++) {
         l->first_boundary = boundary ? n : 0;
         for (int p = 0; p < N_PAIR; p++) {
             bool own = local[a->lower[p]] < n_owned, other = local[a->upper[p]] < n_owned;
-            if (a->taken[a->lower[p]] || a->taken[a->upper[p]] || (!own && !other) || boundary != (own != other || p % 5 == 0)) continue;
+            if (a->taken[a->lower[p]] || a->taken[a->upper[p]] || (!own && !other) ||
+                boundary != (own != other || p % 5 == 0))
+                continue;
             i[n] = local[a->lower[p]];
             j[n] = local[a->upper[p]];
             for (int k = 0; k < LEDGER_WIDTH; k++) ledger[k * l->capacity + n] = a->pair[p][k];
@@ -123,10 +129,12 @@ static void write_pairs(struct sim *s, const struct account_state *a, int rank, 
     l->n_boundary = l->n_mine = n - l->first_boundary;
     buffer_reserve(s->dev, &l->pair_i, (size_t)l->capacity * sizeof *i);
     buffer_reserve(s->dev, &l->pair_j, (size_t)l->capacity * sizeof *j);
-    buffer_reserve(s->dev, &run->pairs->ledger, (size_t)l->capacity * LEDGER_WIDTH * sizeof *ledger);
+    buffer_reserve(
+        s->dev, &run->pairs->ledger, (size_t)l->capacity * LEDGER_WIDTH * sizeof *ledger);
     buffer_write(s->dev, &l->pair_i, 0, (size_t)l->capacity * sizeof *i, i);
     buffer_write(s->dev, &l->pair_j, 0, (size_t)l->capacity * sizeof *j, j);
-    buffer_write(s->dev, &run->pairs->ledger, 0, (size_t)l->capacity * LEDGER_WIDTH * sizeof *ledger, ledger);
+    buffer_write(s->dev, &run->pairs->ledger, 0,
+        (size_t)l->capacity * LEDGER_WIDTH * sizeof *ledger, ledger);
     free(i);
     free(j);
     free(ledger);
@@ -138,7 +146,8 @@ static void write_walls(struct sim *s, const struct account_state *a, int rank, 
     struct wall_contacts *w = s->particle->wall_contacts;
     int n_owned, *local = local_numbers(a, rank, n_rank, &n_owned), wall_of[N_WALL] = {0, 1};
     size_t capacity = (size_t)n_owned + 16;
-    int *candidate = fail_alloc(capacity * sizeof *candidate), *element = fail_alloc(capacity * sizeof *element);
+    int *candidate = fail_alloc(capacity * sizeof *candidate),
+        *element = fail_alloc(capacity * sizeof *element);
     double *ledger = fail_alloc(capacity * LEDGER_WIDTH * sizeof *ledger);
     w->now.n = w->now.n_owned = n_owned;
     w->now.capacity = (int64_t)capacity;
@@ -146,7 +155,8 @@ static void write_walls(struct sim *s, const struct account_state *a, int rank, 
         if (a->taken[i] || local[i] >= n_owned) continue;
         candidate[local[i]] = i % N_WALL;
         element[local[i]] = local[i];
-        for (size_t k = 0; k < LEDGER_WIDTH; k++) ledger[k * capacity + (size_t)local[i]] = a->at_wall[i][k];
+        for (size_t k = 0; k < LEDGER_WIDTH; k++)
+            ledger[k * capacity + (size_t)local[i]] = a->at_wall[i][k];
     }
     buffer_reserve(s->dev, &w->now.candidate, capacity * sizeof *candidate);
     buffer_reserve(s->dev, &w->now.element, capacity * sizeof *element);
@@ -165,16 +175,19 @@ static void write_walls(struct sim *s, const struct account_state *a, int rank, 
 static void init_buffers(struct sim *s)
 {
     struct particle_run *run = s->particle;
-    struct buffer *all[] = {&run->particles->field[FIELD_STATE].now, &run->particles->field[FIELD_STATE].spare, &run->particles->field[FIELD_GID].now,
-        &run->particles->field[FIELD_GID].spare, &run->pairs->now.pair_i, &run->pairs->now.pair_j, &run->pairs->ledger,
-        &run->wall_contacts->now.candidate, &run->wall_contacts->now.element, &run->wall_contacts->ledger, &run->wall_contacts->wall_of};
+    struct buffer *all[] = {&run->particles->field[FIELD_STATE].now,
+        &run->particles->field[FIELD_STATE].spare, &run->particles->field[FIELD_GID].now,
+        &run->particles->field[FIELD_GID].spare, &run->pairs->now.pair_i, &run->pairs->now.pair_j,
+        &run->pairs->ledger, &run->wall_contacts->now.candidate, &run->wall_contacts->now.element,
+        &run->wall_contacts->ledger, &run->wall_contacts->wall_of};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
         buffer_init(all[k], "made up");
         buffer_reserve(s->dev, all[k], N_ELEMENT * 96);
     }
 }
 
-struct sim *account_sim(struct device *dev, struct comm *comm, const struct account_state *a, const struct features *features, int rank, int n_rank)
+struct sim *account_sim(struct device *dev, struct comm *comm, const struct account_state *a,
+    const struct features *features, int rank, int n_rank)
 {
     struct sim *s = fail_alloc(sizeof *s);
     struct particle_run *run = s->particle = fail_alloc(sizeof *run);
@@ -193,7 +206,9 @@ struct sim *account_sim(struct device *dev, struct comm *comm, const struct acco
     w->walls = walls;
     w->poses = fail_alloc(WALL_BATCH * N_WALL * sizeof *w->poses);
     w->room_host = fail_alloc(N_WALL * sizeof *w->room_host);
-    for (int k = 0; k < WALL_BATCH * N_WALL; k++) w->poses[k].active = k % N_WALL == 0 || k / N_WALL < 7; /* the second goes at step 7 */
+    /* the second goes at step 7 */
+    for (int k = 0; k < WALL_BATCH * N_WALL; k++)
+        w->poses[k].active = k % N_WALL == 0 || k / N_WALL < 7;
     init_buffers(s);
     account_write_elements(s, a);
     write_pairs(s, a, rank, n_rank);
@@ -210,7 +225,8 @@ void account_leave(struct sim *s, const struct account_state *a)
     for (int i = 0; i < N_ELEMENT; i++) {
         if (!a->taken[i] || account_owner(i, s->comm->n_rank) != s->comm->rank) continue;
         struct owners_removed *r = &o->removed[o->n_removed++];
-        *r = (struct owners_removed){.gid = i, .radius = a->radius[i], .inverse_m = a->inverse_m[i]};
+        *r =
+            (struct owners_removed){.gid = i, .radius = a->radius[i], .inverse_m = a->inverse_m[i]};
         memcpy(r->x, a->x[i], sizeof r->x);
         memcpy(r->v, a->v[i], sizeof r->v);
         if (run->features.spin) memcpy(r->w, a->w[i], sizeof r->w);
@@ -224,9 +240,10 @@ void account_free(struct sim *s)
     struct particle_run *run = s->particle;
     energy_free(s->dev, run->energy);
     struct wall_contacts *w = run->wall_contacts;
-    struct buffer *all[] = {&run->particles->field[FIELD_STATE].now, &run->particles->field[FIELD_STATE].spare, &run->particles->field[FIELD_GID].now,
-        &run->particles->field[FIELD_GID].spare, &run->pairs->now.pair_i, &run->pairs->now.pair_j, &run->pairs->ledger, &w->now.candidate,
-        &w->now.element, &w->ledger, &w->wall_of};
+    struct buffer *all[] = {&run->particles->field[FIELD_STATE].now,
+        &run->particles->field[FIELD_STATE].spare, &run->particles->field[FIELD_GID].now,
+        &run->particles->field[FIELD_GID].spare, &run->pairs->now.pair_i, &run->pairs->now.pair_j,
+        &run->pairs->ledger, &w->now.candidate, &w->now.element, &w->ledger, &w->wall_of};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) buffer_free(s->dev, all[k]);
     free((void *)(uintptr_t)w->walls);
     free(w->poses);

@@ -1,4 +1,5 @@
-/* The account of a made-up state: right against the host, to the bit the same however it is dealt out, and whole when elements and walls leave. */
+/* The account of a made-up state: right against the host, to the bit the same however it is dealt
+ * out, and whole when elements and walls leave. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -12,8 +13,13 @@ static struct device *dev;
 static struct comm *comm, alone;
 static struct account_state state;
 
-/* kinetic, rotational, gravity, elastic, losses, work, removed; momentum; angular momentum: the order of struct energy_sums */
-enum { N_NUMBER = sizeof(struct energy_sums) / sizeof(double), FIRST_MOMENTUM = 11, FIRST_ANGULAR = 14 };
+/* kinetic, rotational, gravity, elastic, losses, work, removed; momentum; angular momentum: the
+ * order of struct energy_sums */
+enum {
+    N_NUMBER = sizeof(struct energy_sums) / sizeof(double),
+    FIRST_MOMENTUM = 11,
+    FIRST_ANGULAR = 14
+};
 
 static void numbers(const struct energy_sums *e, double out[N_NUMBER])
 {
@@ -47,7 +53,8 @@ static struct reference reference(const struct account_state *a, bool spin)
     struct reference r = {0};
     for (int i = 0; i < N_ELEMENT; i++) {
         if (a->taken[i]) continue;
-        long double m = 1 / (long double)a->inverse_m[i], inertia = 0.4L * m * a->radius[i] * a->radius[i];
+        long double m = 1 / (long double)a->inverse_m[i],
+                    inertia = 0.4L * m * a->radius[i] * a->radius[i];
         for (int k = 0; k < 3; k++) {
             int p = (k + 1) % 3, q = (k + 2) % 3;
             const double *x = a->x[i], *v = a->v[i];
@@ -72,7 +79,8 @@ static void check_reference(const struct energy_sums *e, const struct reference 
 {
     double got[N_NUMBER];
     numbers(e, got);
-    for (int k = 0; k < N_NUMBER; k++) CHECK(fabsl(got[k] - r->sum[k]) <= 8 * (long double)DBL_EPSILON * r->size[k] + 1e-20L);
+    for (int k = 0; k < N_NUMBER; k++)
+        CHECK(fabsl(got[k] - r->sum[k]) <= 8 * (long double)DBL_EPSILON * r->size[k] + 1e-20L);
 }
 
 static struct features features_like(int precision, bool spin)
@@ -99,7 +107,8 @@ static void check_sums(int precision, bool spin)
     struct energy_sums e, again, one;
     account_random(&state, precision > 0);
     if (precision == 2)
-        for (int i = 0; i < N_ELEMENT; i++) state.domain[i % 3] = (double)(float)state.domain[i % 3];
+        for (int i = 0; i < N_ELEMENT; i++)
+            state.domain[i % 3] = (double)(float)state.domain[i % 3];
     struct reference r = reference(&state, spin);
     struct sim *s = dealt(&f), *whole = undivided(&f);
     energy_now(s, &e);
@@ -154,7 +163,8 @@ static double account_size(const struct reference *r)
     return size;
 }
 
-/* What elements and a wall take with them is in `removed`; nothing is counted twice, whoever owns the two of a pair. */
+/* What elements and a wall take with them is in `removed`; nothing is counted twice, whoever owns
+ * the two of a pair. */
 static void check_leaving(bool wall_goes)
 {
     struct features f = features_like(0, true);
@@ -177,13 +187,16 @@ static void check_leaving(bool wall_goes)
         for (int i = 1; i < N_ELEMENT; i += N_WALL) state.at_wall[i][LEDGER_ELASTIC] = 0;
     struct reference left = reference(&state, true);
     for (int k = 0; k < 2; k++) {
-        struct sim *s = both[k], *fresh = k ? undivided(&f) : dealt(&f); /* lists as they are after the build */
+        /* lists as they are after the build */
+        struct sim *s = both[k], *fresh = k ? undivided(&f) : dealt(&f);
         struct energy_sums elastic;
         energy_now(fresh, &elastic);
         energy_now(s, &after[k]);
         after[k].elastic = elastic.elastic;
-        CHECK(fabs(after[k].elastic - (double)left.sum[3]) <= 8 * DBL_EPSILON * (double)left.size[3]);
-        CHECK(fabs(after[k].kinetic - (double)left.sum[0]) <= 8 * DBL_EPSILON * (double)left.size[0]);
+        CHECK(
+            fabs(after[k].elastic - (double)left.sum[3]) <= 8 * DBL_EPSILON * (double)left.size[3]);
+        CHECK(
+            fabs(after[k].kinetic - (double)left.sum[0]) <= 8 * DBL_EPSILON * (double)left.size[0]);
         CHECK(fabs(energy_balance(&before[k], &after[k])) <= 32 * DBL_EPSILON * account_size(&r));
         CHECK(fabs(after[k].removed) > 1e-3 * account_size(&r));
         account_free(fresh);
@@ -192,7 +205,8 @@ static void check_leaving(bool wall_goes)
     CHECK(same(&after[0], &after[1]));
 }
 
-/* Elements that go round a period along gravity keep their potential; one that leaves as well takes its own place's with it. */
+/* Elements that go round a period along gravity keep their potential; one that leaves as well takes
+ * its own place's with it. */
 static void check_wrapping(void)
 {
     struct features f = features_like(0, false);
@@ -223,7 +237,8 @@ static void check_wrapping(void)
     energy_now(s, &after);
     double change = after.kinetic + after.gravity + after.removed - before.kinetic - before.gravity;
     double springs = 0;
-    for (int p = 0; p < N_PAIR; p++) springs += state.lower[p] == 3 || state.upper[p] == 3 ? state.pair[p][LEDGER_ELASTIC] : 0;
+    for (int p = 0; p < N_PAIR; p++)
+        springs += state.lower[p] == 3 || state.upper[p] == 3 ? state.pair[p][LEDGER_ELASTIC] : 0;
     CHECK(fabs(change - springs - state.at_wall[3][LEDGER_ELASTIC]) <= 64 * DBL_EPSILON * size);
     account_free(s);
 }
@@ -246,7 +261,8 @@ static void check_half_kick(void)
     double expected = 0;
     for (int k = 0; k < 3; k++) {
         double v = state.v[5][k] + 0.125 * state.gravity[k];
-        expected += (0.5 * v * v - state.gravity[k] * (state.x[5][k] - state.domain[k])) / state.inverse_m[5];
+        expected += (0.5 * v * v - state.gravity[k] * (state.x[5][k] - state.domain[k])) /
+                    state.inverse_m[5];
     }
     CHECK(fabs(e.removed - expected) <= 1e-14 * fabs(expected));
     account_free(s);
@@ -269,7 +285,8 @@ static void check_unknown(void)
     s = dealt(&f);
     energy_now(s, &e);
     CHECK(isnan(e.kinetic) && isnan(e.momentum[1]) && isnan(e.angular[0]) && isnan(e.angular[2]));
-    CHECK(isfinite(e.gravity) && isfinite(e.rotational) && isfinite(e.momentum[0]) && isfinite(e.angular[1]));
+    CHECK(isfinite(e.gravity) && isfinite(e.rotational) && isfinite(e.momentum[0]) &&
+          isfinite(e.angular[1]));
     account_free(s);
     dev->fp64 = false;
     f.real_is_float = f.position_is_float = true;
@@ -285,7 +302,8 @@ int main(int argc, char **argv)
 {
     comm = comm_create(&argc, &argv);
     dev = device_open(comm, NULL, true, false);
-    alone = (struct comm){.world = MPI_COMM_SELF, .node = MPI_COMM_SELF, .n_rank = 1, .n_node_rank = 1};
+    alone =
+        (struct comm){.world = MPI_COMM_SELF, .node = MPI_COMM_SELF, .n_rank = 1, .n_node_rank = 1};
     for (int precision = 0; precision < 3; precision++) check_sums(precision, precision != 1);
     check_totals();
     check_leaving(false);

@@ -1,4 +1,5 @@
-/* What the ledger of a contact counts in the two steps in which a contact is not one all the time: the touch and the end. */
+/* What the ledger of a contact counts in the two steps in which a contact is not one all the time:
+ * the touch and the end. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -31,24 +32,30 @@ static struct contact_parameters parameters(real z, real f_b, real dt)
 static struct contact_kinematics above(real z, vec3 v, vec3 w, real dt)
 {
     vec3 n = v3(0, 0, -1);
-    return contact_kinematics_wall(n, n, (real)R - z, (real)R - (z - (real)0.5 * dt * v.z), v, v3(0, 0, 0), w, R);
+    return contact_kinematics_wall(
+        n, n, (real)R - z, (real)R - (z - (real)0.5 * dt * v.z), v, v3(0, 0, 0), w, R);
 }
 
-/* A bond breaks while its friction spring is under load: both springs are lost, also where no Hertz contact is compiled in. */
+/* A bond breaks while its friction spring is under load: both springs are lost, also where no Hertz
+ * contact is compiled in. */
 static void a_broken_bond_loses_its_friction_spring(void **state)
 {
     const real dt = 1e-6, speed = 0.1, f_b = 1, xi = 2e-5;
     struct contact_history h = {.xi = {xi, 0, 0}, .state = CONTACT_BONDED};
     real gap = f_b / K + (real)0.2 * speed * dt; /* broke a fifth of a step ago */
-    struct contact_result r = contact_law(above((real)R + gap, v3(0, 0, speed), v3(0, 0, 0), dt), parameters(0, f_b, dt), dt, &h);
+    struct contact_result r = contact_law(
+        above((real)R + gap, v3(0, 0, speed), v3(0, 0, 0), dt), parameters(0, f_b, dt), dt, &h);
     (void)state;
     assert_int_equal(h.state, 0);
     double springs = (double)(f_b * f_b / (2 * K) + (real)0.4 * K * xi * xi);
-    assert_true(fabs((double)r.loss_b - springs) < 2 * (double)(f_b * speed * dt));  /* but for what they did in that step */
-    assert_true((double)((real)0.4 * K * xi * xi) > 5 * (double)(f_b * speed * dt)); /* which is less than the friction spring held */
+    /* but for what they did in that step */
+    assert_true(fabs((double)r.loss_b - springs) < 2 * (double)(f_b * speed * dt));
+    /* which is less than the friction spring held */
+    assert_true((double)((real)0.4 * K * xi * xi) > 5 * (double)(f_b * speed * dt));
 }
 
-/* Fast and grazing: it slides from the touch to the end. Returns (energy after + losses - energy before)/losses, worst over the phase. */
+/* Fast and grazing: it slides from the touch to the end. Returns (energy after + losses - energy
+ * before)/losses, worst over the phase. */
 static double gap_of_grazing(int n)
 {
     const double duration = 3.14159265358979 * sqrt(M / K), inertia = 0.4 * M * R * R;
@@ -79,7 +86,8 @@ static double gap_of_grazing(int n)
     return worst;
 }
 
-/* The friction that a dashpot brings with the first step is of finite size, and its kick lasts half a step, whenever in that step the touch was. */
+/* The friction that a dashpot brings with the first step is of finite size, and its kick lasts half
+ * a step, whenever in that step the touch was. */
 static void sliding_is_counted_from_the_kick(void **state)
 {
     double coarse = gap_of_grazing(25), fine = gap_of_grazing(100);

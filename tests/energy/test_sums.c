@@ -23,7 +23,8 @@ static double random_term(uint64_t key)
     return ldexp(r & 1 ? mantissa : -mantissa, (int)(r >> 1 & 63) - 32);
 }
 
-/* x is a multiple of 2^-80 or rounds to one: compared with x 2^80, computed by shifts of its mantissa. */
+/* x is a multiple of 2^-80 or rounds to one: compared with x 2^80, computed by shifts of its
+ * mantissa. */
 static __int128 exact(double x)
 {
     int exponent;
@@ -39,8 +40,9 @@ static __int128 exact(double x)
 
 static void terms_are_exact(void **state)
 {
-    static const double edge[] = {0, -0.0, 1, -1, 0x1p-80, -0x1p-80, 0x1p-81, 0x1.8p-80, -0x1.8p-80, 0x1p-200, 0x1.fffffffffffffp32,
-        -0x1.fffffffffffffp32, 0x1p-20, -0x1p-20, 0x1.fffffffffffffp-21, 0x1p-50, -0x1.fffffffffffffp-51, 5e-324};
+    static const double edge[] = {0, -0.0, 1, -1, 0x1p-80, -0x1p-80, 0x1p-81, 0x1.8p-80, -0x1.8p-80,
+        0x1p-200, 0x1.fffffffffffffp32, -0x1.fffffffffffffp32, 0x1p-20, -0x1p-20,
+        0x1.fffffffffffffp-21, 0x1p-50, -0x1.fffffffffffffp-51, 5e-324};
     (void)state;
     for (size_t i = 0; i < 20000 + sizeof edge / sizeof *edge; i++) {
         double x = i < sizeof edge / sizeof *edge ? edge[i] : random_term(i);
@@ -94,7 +96,8 @@ static void what_does_not_fit_is_counted(void **state)
 static void one_element(void **state)
 {
     const double g[3] = {0, 1, -10}, origin[3] = {1, 1, 1};
-    const double expected[SUMS_ELEMENT] = {5, 1.6, -2 * (1 - 20), 2, 0, -4, -8, 2 * (3 * 1 - 1 * -2) + 0.8, -4};
+    const double expected[SUMS_ELEMENT] = {
+        5, 1.6, -2 * (1 - 20), 2, 0, -4, -8, 2 * (3 * 1 - 1 * -2) + 0.8, -4};
     struct sums_element e = {{1, 2, 3}, {1, 0, -2}, {0, 4, 0}, 0.5, 2};
     double term[SUMS_ELEMENT];
     (void)state;
@@ -104,7 +107,8 @@ static void one_element(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(terms_are_exact), cmocka_unit_test(order_does_not_matter),
-        cmocka_unit_test(what_does_not_fit_is_counted), cmocka_unit_test(one_element)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(terms_are_exact),
+        cmocka_unit_test(order_does_not_matter), cmocka_unit_test(what_does_not_fit_is_counted),
+        cmocka_unit_test(one_element)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,7 +4,8 @@
 #include "particle/generate.h"
 #include "shape/walls.h"
 
-static struct elements_host *generate_from(const char *csv, struct domain domain, struct scene_errors *errors)
+static struct elements_host *generate_from(
+    const char *csv, struct domain domain, struct scene_errors *errors)
 {
     char *path = scratch_file(csv, strlen(csv));
     struct element_group group = {.name = "grains", .from_file = true, .file = path, .line = 4};
@@ -20,17 +21,25 @@ static void test_coincident(void **unused)
     (void)unused;
     struct domain open = {0};
     struct scene_errors errors = {0};
-    struct elements_host *e = generate_from("x,y,z,radius\n0,0,0,1\n1.01e-3,0,0,1\n0,5,0,0.1\n0,5.00011,0,10\n", open, &errors);
+    struct elements_host *e = generate_from(
+        "x,y,z,radius\n0,0,0,1\n1.01e-3,0,0,1\n0,5,0,0.1\n0,5.00011,0,10\n", open, &errors);
     assert_non_null(e);
     generate_free(e);
-    assert_null(generate_from("x,y,z,radius\n0,0,0,1\n3,0,0,1\n0.99e-3,0,0,1\n0,5,0,0.1\n0,5.00009,0,10\n", open, &errors));
+    assert_null(
+        generate_from("x,y,z,radius\n0,0,0,1\n3,0,0,1\n0.99e-3,0,0,1\n0,5,0,0.1\n0,5.00009,0,10\n",
+            open, &errors));
     assert_int_equal(errors.n, 2);
-    scratch_expect(&errors, 0, "scene.yaml:4: element 0 of group 'grains' and element 2 of group 'grains' coincide at (0.00099, 0, 0)");
-    scratch_expect(&errors, 1, "scene.yaml:4: element 3 of group 'grains' and element 4 of group 'grains' coincide at (0, 5.00009, 0)");
+    scratch_expect(&errors, 0,
+        "scene.yaml:4: element 0 of group 'grains' and element 2 of group 'grains' coincide at "
+        "(0.00099, 0, 0)");
+    scratch_expect(&errors, 1,
+        "scene.yaml:4: element 3 of group 'grains' and element 4 of group 'grains' coincide at "
+        "(0, 5.00009, 0)");
     scene_errors_free(&errors);
 }
 
-/* Pairs at random distances around the threshold, anywhere on the grid of cells: found exactly if nearer. */
+/* Pairs at random distances around the threshold, anywhere on the grid of cells: found exactly if
+ * nearer. */
 static void test_coincident_at_random(void **unused)
 {
     (void)unused;
@@ -44,7 +53,9 @@ static void test_coincident_at_random(void **unused)
             length += d[a] * d[a];
         }
         for (int a = 0; a < 3; a++) y[a] = x[a] + distance * d[a] / sqrt(length);
-        snprintf(csv, sizeof csv, "x,y,z,radius\n%.17g,%.17g,%.17g,1\n9,9,9,1.5\n%.17g,%.17g,%.17g,1\n", x[0], x[1], x[2], y[0], y[1], y[2]);
+        snprintf(csv, sizeof csv,
+            "x,y,z,radius\n%.17g,%.17g,%.17g,1\n9,9,9,1.5\n%.17g,%.17g,%.17g,1\n", x[0], x[1], x[2],
+            y[0], y[1], y[2]);
         struct scene_errors errors = {0};
         struct domain open = {0};
         struct elements_host *e = generate_from(csv, open, &errors);
@@ -62,10 +73,13 @@ static void test_coincident_across_faces(void **unused)
     struct scene_errors errors = {0};
     assert_null(generate_from("x,y,z,radius\n10,0,30,1\n5,5,5,1\n0,20,0,1\n", domain, &errors));
     assert_int_equal(errors.n, 1);
-    scratch_expect(&errors, 0, "scene.yaml:4: element 0 of group 'grains' and element 2 of group 'grains' coincide at (0, 20, 0)");
+    scratch_expect(&errors, 0,
+        "scene.yaml:4: element 0 of group 'grains' and element 2 of group 'grains' coincide at "
+        "(0, 20, 0)");
     scene_errors_free(&errors);
     domain.periodic[1] = false;
-    struct elements_host *e = generate_from("x,y,z,radius\n10,0,30,1\n5,5,5,1\n0,20,0,1\n", domain, &errors);
+    struct elements_host *e =
+        generate_from("x,y,z,radius\n10,0,30,1\n5,5,5,1\n0,20,0,1\n", domain, &errors);
     assert_non_null(e);
     generate_free(e);
 }
@@ -78,10 +92,13 @@ static void test_short_period(void **unused)
     struct scene_errors errors = {0};
     assert_null(generate_from("x,y,z,radius\n1,1,1,1.5\n4,1,4,0.5\n", domain, &errors));
     assert_int_equal(errors.n, 1);
-    scratch_expect(&errors, 0, "scene.yaml: domain: periodic in x over 5.9 m, which has to be at least twice the largest diameter, 3 m");
+    scratch_expect(&errors, 0,
+        "scene.yaml: domain: periodic in x over 5.9 m, which has to be at least twice the largest "
+        "diameter, 3 m");
     scene_errors_free(&errors);
     domain.max[0] = 6;
-    struct elements_host *e = generate_from("x,y,z,radius\n1,1,1,1.5\n4,1,4,0.5\n", domain, &errors);
+    struct elements_host *e =
+        generate_from("x,y,z,radius\n1,1,1,1.5\n4,1,4,0.5\n", domain, &errors);
     assert_non_null(e);
     generate_free(e);
 }
@@ -108,14 +125,18 @@ static void test_outside_the_domain(void **unused)
     (void)unused;
     struct domain domain = {.has_box = true, .max = {1, 1, 1}};
     struct scene_errors errors = {0};
-    assert_null(generate_from("x,y,z,radius\n0.5,0.5,0.5,0.1\n0.5,0.5,1.5,0.1\n-1,0,0,1\n-2,0,0,1\n-3,0,0,1\n", domain, &errors));
+    assert_null(generate_from(
+        "x,y,z,radius\n0.5,0.5,0.5,0.1\n0.5,0.5,1.5,0.1\n-1,0,0,1\n-2,0,0,1\n-3,0,0,1\n", domain,
+        &errors));
     assert_int_equal(errors.n, 4);
-    scratch_expect(&errors, 0, "scene.yaml:4: element 1 of group 'grains' at (0.5, 0.5, 1.5) is outside the domain");
+    scratch_expect(&errors, 0,
+        "scene.yaml:4: element 1 of group 'grains' at (0.5, 0.5, 1.5) is outside the domain");
     scratch_expect(&errors, 3, "scene.yaml:4: and 1 more elements are outside the domain");
     scene_errors_free(&errors);
 }
 
-/* Elements of radius 1 at height z over a wall of each kind in the plane z = 0: allowed until half the radius is in. */
+/* Elements of radius 1 at height z over a wall of each kind in the plane z = 0: allowed until half
+ * the radius is in. */
 static void check_heights(struct wall wall, const double *height, int n, int n_bad, double x)
 {
     struct element_group group = {.name = "grains"};
@@ -136,7 +157,9 @@ static void check_heights(struct wall wall, const double *height, int n, int n_b
     assert_int_equal(errors.n, n_bad);
     if (n_bad == 1) {
         char text[200];
-        snprintf(text, sizeof text, "scene.yaml:7: element %d of group 'grains' at (%g, 0, %g) is inside wall 'wall'", n - 1, x, height[n - 1]);
+        snprintf(text, sizeof text,
+            "scene.yaml:7: element %d of group 'grains' at (%g, 0, %g) is inside wall 'wall'",
+            n - 1, x, height[n - 1]);
         scratch_expect(&errors, 0, text);
     }
     walls_free(walls);
@@ -147,7 +170,8 @@ static void test_in_walls(void **unused)
 {
     (void)unused;
     struct wall wall = scratch_wall(SURFACE_PLANE);
-    const double fine[4] = {3, 1, 0.8, 0.51}, deep[5] = {3, 1, 0.8, 0.51, 0.49}, behind[6] = {1, -0.6, -2, -100, -3, -4};
+    const double fine[4] = {3, 1, 0.8, 0.51}, deep[5] = {3, 1, 0.8, 0.51, 0.49},
+                 behind[6] = {1, -0.6, -2, -100, -3, -4};
     check_heights(wall, fine, 4, 0, 0);
     check_heights(wall, deep, 5, 1, 0);
     check_heights(wall, behind, 6, 4, 0); /* five, of which three are named */
@@ -168,11 +192,13 @@ static void test_in_walls(void **unused)
     check_heights(wall, behind, 2, 0, 0);
 }
 
-/* A mesh that a phase of its oscillation puts elsewhere at t = 0, and walls that are not there yet. */
+/* A mesh that a phase of its oscillation puts elsewhere at t = 0, and walls that are not there
+ * yet. */
 static void test_in_a_moved_wall(void **unused)
 {
     (void)unused;
-    const double corner[18] = {-9, -9, 0, 9, -9, 0, 9, 9, 0, -9, -9, 0, 9, 9, 0, -9, 9, 0}, fine[2] = {3.6, 0}, deep[2] = {3.6, 3.4};
+    const double corner[18] = {-9, -9, 0, 9, -9, 0, 9, 9, 0, -9, -9, 0, 9, 9, 0, -9, 9, 0},
+                 fine[2] = {3.6, 0}, deep[2] = {3.6, 3.4};
     struct wall wall = scratch_wall(SURFACE_STL);
     wall.stl = scratch_stl(corner, 2);
     wall.amplitude[2] = 3;
@@ -187,8 +213,10 @@ static void test_in_a_moved_wall(void **unused)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_coincident), cmocka_unit_test(test_coincident_at_random),
-        cmocka_unit_test(test_coincident_across_faces), cmocka_unit_test(test_short_period), cmocka_unit_test(test_all_in_one_place),
-        cmocka_unit_test(test_outside_the_domain), cmocka_unit_test(test_in_walls), cmocka_unit_test(test_in_a_moved_wall)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_coincident),
+        cmocka_unit_test(test_coincident_at_random), cmocka_unit_test(test_coincident_across_faces),
+        cmocka_unit_test(test_short_period), cmocka_unit_test(test_all_in_one_place),
+        cmocka_unit_test(test_outside_the_domain), cmocka_unit_test(test_in_walls),
+        cmocka_unit_test(test_in_a_moved_wall)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

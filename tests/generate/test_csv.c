@@ -6,8 +6,12 @@
 static struct elements_host *read_csv(const char *text, char **path, struct scene_errors *errors)
 {
     *path = scratch_file(text, strlen(text));
-    struct element_group group = {
-        .name = "grains", .from_file = true, .file = *path, .line = 4, .velocity = {1, 2, 3}, .angular_velocity = {4, 5, 6}};
+    struct element_group group = {.name = "grains",
+        .from_file = true,
+        .file = *path,
+        .line = 4,
+        .velocity = {1, 2, 3},
+        .angular_velocity = {4, 5, 6}};
     struct scene scene = {.path = "scene.yaml", .group = &group, .n_group = 1};
     return generate_elements(&scene, errors);
 }
@@ -17,8 +21,10 @@ static void test_columns_in_any_order(void **unused)
     (void)unused;
     struct scene_errors errors = {0};
     char *path;
-    struct elements_host *e = read_csv("radius, z,vx ,y,x,wz\r\n0.5,3,-7,2,1,9\r\n\r\n 0.25 ,\t6, 8e0 ,5,4,-0.5", &path, &errors);
-    const double x[6] = {1, 2, 3, 4, 5, 6}, v[6] = {-7, 2, 3, 8, 2, 3}, w[6] = {4, 5, 9, 4, 5, -0.5}, radius[2] = {0.5, 0.25};
+    struct elements_host *e = read_csv(
+        "radius, z,vx ,y,x,wz\r\n0.5,3,-7,2,1,9\r\n\r\n 0.25 ,\t6, 8e0 ,5,4,-0.5", &path, &errors);
+    const double x[6] = {1, 2, 3, 4, 5, 6}, v[6] = {-7, 2, 3, 8, 2, 3},
+                 w[6] = {4, 5, 9, 4, 5, -0.5}, radius[2] = {0.5, 0.25};
     assert_int_equal(errors.n, 0);
     assert_int_equal(e->n, 2);
     assert_memory_equal(e->x, x, sizeof x);
@@ -47,20 +53,27 @@ static void refuse(const char *text, const char *const *expected, int n)
 static void test_values(void **unused)
 {
     (void)unused;
-    const char *const expected[] = {":2:7: z: 'nan' is not finite", ":3:5: y is empty", ":3:6: z: 'three' is not a number",
-        ":3:12: radius: '-1' is not positive", ":4:5: 3 columns, the header has 4", ":5:9: 5 columns, the header has 4",
+    const char *const expected[] = {":2:7: z: 'nan' is not finite", ":3:5: y is empty",
+        ":3:6: z: 'three' is not a number", ":3:12: radius: '-1' is not positive",
+        ":4:5: 3 columns, the header has 4", ":5:9: 5 columns, the header has 4",
         ":6:1: x: '1e999' is not finite", ":8:7: radius: '0' is not positive"};
-    refuse("x,y,z,radius\n1, 2, nan,1\n 1, ,three,-1\n1,2,3\n1,2,3,4,5\n1e999,2,3,1\n1,2,3,1\n4,5,6,0\n", expected, 8);
+    refuse("x,y,z,radius\n1, 2, nan,1\n 1, "
+           ",three,-1\n1,2,3\n1,2,3,4,5\n1e999,2,3,1\n1,2,3,1\n4,5,6,0\n",
+        expected, 8);
 }
 
 static void test_header(void **unused)
 {
     (void)unused;
-    const char *const misspelt[] = {":1:7: unknown column 'radis'; did you mean 'radius'?", ":1:1: column 'radius' is missing"};
+    const char *const misspelt[] = {
+        ":1:7: unknown column 'radis'; did you mean 'radius'?", ":1:1: column 'radius' is missing"};
     const char *const twice[] = {":1:3: column 'x' is there twice", ":1:1: column 'y' is missing"};
-    const char *const none[] = {":2:1: unknown column '0.1'; the first line names columns of x,y,z,radius,vx,vy,vz,wx,wy,wz",
-        ":2:5: unknown column '0.2'; the first line names columns of x,y,z,radius,vx,vy,vz,wx,wy,wz", ":2:1: column 'x' is missing",
-        ":2:1: column 'y' is missing", ":2:1: column 'z' is missing", ":2:1: column 'radius' is missing"};
+    const char *const none[] = {":2:1: unknown column '0.1'; the first line names columns of "
+                                "x,y,z,radius,vx,vy,vz,wx,wy,wz",
+        ":2:5: unknown column '0.2'; the first line names columns of "
+        "x,y,z,radius,vx,vy,vz,wx,wy,wz",
+        ":2:1: column 'x' is missing", ":2:1: column 'y' is missing", ":2:1: column 'z' is missing",
+        ":2:1: column 'radius' is missing"};
     const char *const nothing[] = {": no element"};
     refuse("x,y,z,radis\n1,2,3,4\n", misspelt, 2);
     refuse("x,x,z,radius\n1,2,3,4\n", twice, 2);
@@ -91,13 +104,15 @@ static void test_missing_file(void **unused)
     struct scene scene = {.path = "scene.yaml", .group = &group, .n_group = 1};
     struct scene_errors errors = {0};
     assert_null(generate_elements(&scene, &errors));
-    scratch_expect(&errors, 0, "scene.yaml:4: elements 'grains': no.csv: No such file or directory");
+    scratch_expect(
+        &errors, 0, "scene.yaml:4: elements 'grains': no.csv: No such file or directory");
     scene_errors_free(&errors);
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_columns_in_any_order), cmocka_unit_test(test_values), cmocka_unit_test(test_header),
-        cmocka_unit_test(test_many), cmocka_unit_test(test_missing_file)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_columns_in_any_order),
+        cmocka_unit_test(test_values), cmocka_unit_test(test_header), cmocka_unit_test(test_many),
+        cmocka_unit_test(test_missing_file)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,19 +1,25 @@
-/* Filled regions: every sphere whole within its region, no two overlapping, the number asked for, from the lowest up, always the same. */
+/* Filled regions: every sphere whole within its region, no two overlapping, the number asked for,
+ * from the lowest up, always the same. */
 #include "../walls/scratch.h"
 
 #include "particle/generate.h"
 
 static struct element_group fill_group(enum region_kind kind)
 {
-    struct element_group group = {
-        .name = "grains", .diameter = {0.1, 0.1}, .jitter = 0.2, .seed = 1, .line = 9, .region = {.kind = kind, .scale = 1}};
+    struct element_group group = {.name = "grains",
+        .diameter = {0.1, 0.1},
+        .jitter = 0.2,
+        .seed = 1,
+        .line = 9,
+        .region = {.kind = kind, .scale = 1}};
     for (int a = 0; a < 3; a++) group.region.max[a] = 1.2;
     return group;
 }
 
 static struct scene fill_scene(struct element_group *group)
 {
-    struct scene scene = {.path = "scene.yaml", .group = group, .n_group = 1, .gravity = {0, 0, -9.81}};
+    struct scene scene = {
+        .path = "scene.yaml", .group = group, .n_group = 1, .gravity = {0, 0, -9.81}};
     return scene;
 }
 
@@ -33,7 +39,8 @@ static double smallest_gap(const struct elements_host *e)
     for (int64_t i = 0; i < e->n; i++)
         for (int64_t j = 0; j < i; j++) {
             double d2 = 0;
-            for (int a = 0; a < 3; a++) d2 += (e->x[3 * i + a] - e->x[3 * j + a]) * (e->x[3 * i + a] - e->x[3 * j + a]);
+            for (int a = 0; a < 3; a++)
+                d2 += (e->x[3 * i + a] - e->x[3 * j + a]) * (e->x[3 * i + a] - e->x[3 * j + a]);
             gap = fmin(gap, sqrt(d2) - e->radius[i] - e->radius[j]);
         }
     return gap;
@@ -46,13 +53,15 @@ static void test_box(void **unused)
     struct element_group group = fill_group(REGION_BOX);
     struct elements_host *e = fill(&group);
     assert_int_equal(e->n, 1000);
-    for (int64_t k = 0; k < 3 * e->n; k++) assert_true(e->x[k] >= 0.05 - 1e-12 && e->x[k] <= 1.15 + 1e-12);
+    for (int64_t k = 0; k < 3 * e->n; k++)
+        assert_true(e->x[k] >= 0.05 - 1e-12 && e->x[k] <= 1.15 + 1e-12);
     double gap = smallest_gap(e);
     assert_true(gap > 0 && gap < 0.01);
     generate_free(e);
 }
 
-/* Sizes spread over their range, and displacements over theirs: mean and spread of uniform numbers (spread of the mean: range/sqrt(12 n)). */
+/* Sizes spread over their range, and displacements over theirs: mean and spread of uniform numbers
+ * (spread of the mean: range/sqrt(12 n)). */
 static void test_random_numbers(void **unused)
 {
     (void)unused;
@@ -77,7 +86,8 @@ static void test_random_numbers(void **unused)
     generate_free(e);
 }
 
-/* The first k of n are the k alone, bit for bit; another seed gives others; heights never fall by more than the jitter. */
+/* The first k of n are the k alone, bit for bit; another seed gives others; heights never fall by
+ * more than the jitter. */
 static void test_count_takes_the_lowest(void **unused)
 {
     (void)unused;
@@ -91,7 +101,8 @@ static void test_count_takes_the_lowest(void **unused)
     assert_memory_equal(some->x, all->x, 345 * 3 * sizeof(double));
     assert_memory_equal(some->x, again->x, 345 * 3 * sizeof(double));
     assert_memory_not_equal(some->x, other->x, 345 * 3 * sizeof(double));
-    for (int64_t i = 1; i < all->n; i++) assert_true(all->x[3 * i + 2] > all->x[3 * i - 1] - 0.02 - 1e-12);
+    for (int64_t i = 1; i < all->n; i++)
+        assert_true(all->x[3 * i + 2] > all->x[3 * i - 1] - 0.02 - 1e-12);
     generate_free(all);
     generate_free(some);
     generate_free(again);
@@ -112,10 +123,16 @@ static void test_gravity(void **unused)
         struct elements_host *all = generate_elements(&scene, &errors);
         group.count = 500;
         struct elements_host *some = generate_elements(&scene, &errors);
-        double up[3] = {-gravity[g][0], -gravity[g][1], g == 4 ? 1 : -gravity[g][2]}, top = -HUGE_VAL;
+        double up[3] = {-gravity[g][0], -gravity[g][1], g == 4 ? 1 : -gravity[g][2]},
+               top = -HUGE_VAL;
         int64_t n_below = 0;
-        for (int64_t i = 0; i < some->n; i++) top = fmax(top, some->x[3 * i] * up[0] + some->x[3 * i + 1] * up[1] + some->x[3 * i + 2] * up[2]);
-        for (int64_t i = 0; i < all->n; i++) n_below += all->x[3 * i] * up[0] + all->x[3 * i + 1] * up[1] + all->x[3 * i + 2] * up[2] < top - 1e-9;
+        for (int64_t i = 0; i < some->n; i++)
+            top = fmax(top,
+                some->x[3 * i] * up[0] + some->x[3 * i + 1] * up[1] + some->x[3 * i + 2] * up[2]);
+        for (int64_t i = 0; i < all->n; i++)
+            n_below +=
+                all->x[3 * i] * up[0] + all->x[3 * i + 1] * up[1] + all->x[3 * i + 2] * up[2] <
+                top - 1e-9;
         assert_true(n_below < 500); /* those strictly below the highest chosen one are all chosen */
         generate_free(all);
         generate_free(some);
@@ -140,7 +157,8 @@ static void test_cylinder(void **unused)
             z += (e->x[3 * i + a] - from[a]) * (to[a] - from[a]) / length;
             square += (e->x[3 * i + a] - from[a]) * (e->x[3 * i + a] - from[a]);
         }
-        assert_true(z >= 0.05 - 1e-9 && z <= length - 0.05 + 1e-9 && sqrt(square - z * z) <= 0.35 + 1e-9);
+        assert_true(
+            z >= 0.05 - 1e-9 && z <= length - 0.05 + 1e-9 && sqrt(square - z * z) <= 0.35 + 1e-9);
     }
     volume = 3.14159265 * 0.35 * 0.35 * (length - 0.1); /* where centres may be */
     assert_true(fabs((double)e->n * pitch * pitch * pitch / volume - 1) < 0.1);
@@ -148,7 +166,8 @@ static void test_cylinder(void **unused)
     generate_free(e);
 }
 
-/* A turned cube as STL holds what the check against its six planes allows, and about as many as by volume. */
+/* A turned cube as STL holds what the check against its six planes allows, and about as many as by
+ * volume. */
 static void test_stl(void **unused)
 {
     (void)unused;
@@ -163,7 +182,8 @@ static void test_stl(void **unused)
     struct elements_host *e = fill(&group);
     for (int64_t i = 0; i < e->n; i++)
         for (int a = 0; a < 3; a++) {
-            double q = turn[a] * e->x[3 * i] + turn[3 + a] * e->x[3 * i + 1] + turn[6 + a] * e->x[3 * i + 2];
+            double q = turn[a] * e->x[3 * i] + turn[3 + a] * e->x[3 * i + 1] +
+                       turn[6 + a] * e->x[3 * i + 2];
             assert_true(q >= 0.05 - 1e-9 && q <= 0.95 + 1e-9);
         }
     assert_true(fabs((double)e->n * 0.12 * 0.12 * 0.12 / (0.9 * 0.9 * 0.9) - 1) < 0.15);
@@ -171,7 +191,8 @@ static void test_stl(void **unused)
     scratch_remove(group.region.stl);
 }
 
-/* The case V-funnel: 10,600 spheres of 5 mm in the filling, none overlapping, none in the funnel's wall or beyond its gate. */
+/* The case V-funnel: 10,600 spheres of 5 mm in the filling, none overlapping, none in the funnel's
+ * wall or beyond its gate. */
 static void test_v_funnel(void **unused)
 {
     (void)unused;
@@ -185,9 +206,11 @@ static void test_v_funnel(void **unused)
     assert_int_equal(e->n, 10600);
     for (int64_t i = 0; i < e->n; i++) {
         const double *x = e->x + 3 * i;
-        double half = x[2] < 0.06 ? 0.015 : fmin(0.135, 0.015 + 0.5 * (x[2] - 0.06)); /* taper 1 : 2 above a neck of 60 mm */
+        /* taper 1 : 2 above a neck of 60 mm */
+        double half = x[2] < 0.06 ? 0.015 : fmin(0.135, 0.015 + 0.5 * (x[2] - 0.06));
         double slope = x[2] > 0.06 && x[2] < 0.3 ? sqrt(1.25) : 1;
-        assert_true(x[2] > 2.5e-3 && fabs(x[1]) < 0.0125 && half - fabs(x[0]) > 2.5e-3 * slope - 1e-5);
+        assert_true(
+            x[2] > 2.5e-3 && fabs(x[1]) < 0.0125 && half - fabs(x[0]) > 2.5e-3 * slope - 1e-5);
     }
     generate_free(e);
 }
@@ -210,7 +233,8 @@ static void test_refused(void **unused)
     char text[300];
     struct element_group group = fill_group(REGION_BOX);
     group.count = 1001;
-    refuse(&group, "scene.yaml:9: elements 'grains': 1001 elements were asked for, 1000 fit into the region");
+    refuse(&group,
+        "scene.yaml:9: elements 'grains': 1001 elements were asked for, 1000 fit into the region");
     group.count = 0;
     group.region.max[1] = 0.08;
     refuse(&group, "scene.yaml:9: elements 'grains': no element of 0.1 m fits into the region");
@@ -220,7 +244,8 @@ static void test_refused(void **unused)
     scratch_box(low, high, corner);
     group.region.stl = scratch_stl(corner, 11);
     snprintf(text, sizeof text,
-        "scene.yaml:9: elements 'grains': %s: a region needs a closed surface with triangles that all face one way: "
+        "scene.yaml:9: elements 'grains': %s: a region needs a closed surface with triangles that "
+        "all face one way: "
         "3 of its 18 edges do not match",
         group.region.stl);
     refuse(&group, text);
@@ -229,8 +254,9 @@ static void test_refused(void **unused)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_box), cmocka_unit_test(test_random_numbers),
-        cmocka_unit_test(test_count_takes_the_lowest), cmocka_unit_test(test_gravity), cmocka_unit_test(test_cylinder), cmocka_unit_test(test_stl),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_box),
+        cmocka_unit_test(test_random_numbers), cmocka_unit_test(test_count_takes_the_lowest),
+        cmocka_unit_test(test_gravity), cmocka_unit_test(test_cylinder), cmocka_unit_test(test_stl),
         cmocka_unit_test(test_v_funnel), cmocka_unit_test(test_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
-/* compile_force KERNEL PRECISION FEATURE...: builds a force kernel with these features and runs it once on zeros, so that the driver compiles it and
- * nothing else. What its compiler has to say goes where the driver sends it. Leaves with 77 where the platform is not pocl or has no doubles. */
+/* compile_force KERNEL PRECISION FEATURE...: builds a force kernel with these features and runs it
+ * once on zeros, so that the driver compiles it and nothing else. What its compiler has to say goes
+ * where the driver sends it. Leaves with 77 where the platform is not pocl or has no doubles. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,9 +17,11 @@ static void set_feature(struct features *f, const char *name)
     const struct {
         const char *name;
         bool *value;
-    } table[] = {{"spin", &f->spin}, {"sizes", &f->sizes}, {"materials", &f->materials}, {"periodic", &f->periodic[0]}, {"plane", &f->plane},
-        {"cylinder", &f->cylinder}, {"linear", &f->pair.linear}, {"hertz", &f->pair.hertz}, {"tangential", &f->pair.tangential},
-        {"damping", &f->pair.tangential_damping}, {"epsd", &f->pair.rolling_epsd}, {"cdt", &f->pair.rolling_cdt}, {"binding", &f->pair.binding}};
+    } table[] = {{"spin", &f->spin}, {"sizes", &f->sizes}, {"materials", &f->materials},
+        {"periodic", &f->periodic[0]}, {"plane", &f->plane}, {"cylinder", &f->cylinder},
+        {"linear", &f->pair.linear}, {"hertz", &f->pair.hertz}, {"tangential", &f->pair.tangential},
+        {"damping", &f->pair.tangential_damping}, {"epsd", &f->pair.rolling_epsd},
+        {"cdt", &f->pair.rolling_cdt}, {"binding", &f->pair.binding}};
     for (size_t k = 0; k < sizeof table / sizeof *table; k++)
         if (!strcmp(table[k].name, name)) {
             *table[k].value = true;
@@ -48,7 +51,8 @@ static void set_arguments(struct device *dev, struct launch *launch, struct buff
 int main(int argc, char **argv)
 {
     if (argc < 3) return EXIT_USAGE;
-    const char *sources[] = {!strcmp(argv[1], "pair_force") ? "pair_force.cl" : "wall_force.cl", NULL};
+    const char *sources[] = {
+        !strcmp(argv[1], "pair_force") ? "pair_force.cl" : "wall_force.cl", NULL};
     struct features features = {.walls = true};
     static struct buffer zeros[MOST];
     bool is_pair = !strcmp(argv[1], "pair_force");

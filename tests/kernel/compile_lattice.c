@@ -1,5 +1,6 @@
-/* compile_lattice lattice PRECISION small|turn [volume] [rk4|rkn4] [energy]: one step of a small block, so that the driver compiles its kernels.
- * Leaves with 77 where the platform is not pocl or has no doubles. */
+/* compile_lattice lattice PRECISION small|turn [volume] [rk4|rkn4] [energy]: one step of a small
+ * block, so that the driver compiles its kernels. Leaves with 77 where the platform is not pocl or
+ * has no doubles. */
 #include <stdio.h>
 #include <string.h>
 

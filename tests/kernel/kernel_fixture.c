@@ -15,7 +15,8 @@ struct device *fixture_device(void)
     return dev;
 }
 
-struct program *fixture_program(struct device *dev, const struct features *features, enum features_program program, const char *const *sources)
+struct program *fixture_program(struct device *dev, const struct features *features,
+    enum features_program program, const char *const *sources)
 {
     char *options = features_options(features, program);
     struct program *built = program_build(dev, NULL, "test", options, sources);
@@ -23,20 +24,23 @@ struct program *fixture_program(struct device *dev, const struct features *featu
     return built;
 }
 
-void fixture_buffer(struct device *dev, struct buffer *buffer, const char *name, size_t bytes, const void *data)
+void fixture_buffer(
+    struct device *dev, struct buffer *buffer, const char *name, size_t bytes, const void *data)
 {
     buffer_init(buffer, name);
     buffer_reserve(dev, buffer, bytes);
     if (data) buffer_write(dev, buffer, 0, bytes, data);
 }
 
-void fixture_bind(struct device *dev, struct launch *launch, struct buffer *buffer, const char *name, size_t bytes, const void *data)
+void fixture_bind(struct device *dev, struct launch *launch, struct buffer *buffer,
+    const char *name, size_t bytes, const void *data)
 {
     fixture_buffer(dev, buffer, name, bytes, data);
     launch_bind_buffer_if(launch, name, buffer);
 }
 
-void fixture_same_bits(const char *what, long at, const void *device, const void *host, size_t bytes, const char *file, int line)
+void fixture_same_bits(const char *what, long at, const void *device, const void *host,
+    size_t bytes, const char *file, int line)
 {
     if (!memcmp(device, host, bytes)) return;
     if (bytes == 4) {

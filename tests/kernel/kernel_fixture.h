@@ -1,8 +1,9 @@
-/* What the tests of kernels share: a device that can do the precision they were compiled in, programs as the driver builds them, buffers from arrays.
+/* What the tests of kernels share: a device that can do the precision they were compiled in,
+ * programs as the driver builds them, buffers from arrays.
  *
- * A test is compiled with the WITH_ flags and the precision of its kernels: the host's copy of the laws and the features that the driver turns into
- * build
- * options come from the same flags. Numbers on the device are then `real` and `preal` of types.h. */
+ * A test is compiled with the WITH_ flags and the precision of its kernels: the host's copy of the
+ * laws and the features that the driver turns into build options come from the same flags. Numbers
+ * on the device are then `real` and `preal` of types.h. */
 #ifndef KERNEL_FIXTURE_H
 #define KERNEL_FIXTURE_H
 
@@ -22,10 +23,12 @@ struct record {
 };
 _Static_assert(sizeof(struct record) == ELEMENT_BYTES, "a record is what element.h says");
 
-/* The default device. Leaves with 77 (skipped) where it has no doubles and the test needs them, or where its floats are not correctly rounded. */
+/* The default device. Leaves with 77 (skipped) where it has no doubles and the test needs them, or
+ * where its floats are not correctly rounded. */
 struct device *fixture_device(void);
 
-/* The scene's features that these flags stand for; the same law for pairs and, WITH_WALLS, walls. */
+/* The scene's features that these flags stand for; the same law for pairs and, WITH_WALLS,
+ * walls. */
 static inline struct features fixture_features(void)
 {
     struct law_features law = {.any = true,
@@ -57,15 +60,20 @@ static inline struct features fixture_features(void)
         .wall = WITH_WALLS ? law : none};
 }
 
-struct program *fixture_program(struct device *dev, const struct features *features, enum features_program program, const char *const *sources);
+struct program *fixture_program(struct device *dev, const struct features *features,
+    enum features_program program, const char *const *sources);
 
 /* A buffer with that content; `data` NULL: as buffer_reserve leaves it. */
-void fixture_buffer(struct device *dev, struct buffer *buffer, const char *name, size_t bytes, const void *data);
+void fixture_buffer(
+    struct device *dev, struct buffer *buffer, const char *name, size_t bytes, const void *data);
 /* The same and bound to the argument of its name. Buffers have to stay where they are. */
-void fixture_bind(struct device *dev, struct launch *launch, struct buffer *buffer, const char *name, size_t bytes, const void *data);
+void fixture_bind(struct device *dev, struct launch *launch, struct buffer *buffer,
+    const char *name, size_t bytes, const void *data);
 
 /* Fails unless both numbers have the same bits. */
-#define fixture_same(what, at, device, host) fixture_same_bits(what, (long)(at), &(device), &(host), sizeof(device), __FILE__, __LINE__)
-void fixture_same_bits(const char *what, long at, const void *device, const void *host, size_t bytes, const char *file, int line);
+#define fixture_same(what, at, device, host)                                                       \
+    fixture_same_bits(what, (long)(at), &(device), &(host), sizeof(device), __FILE__, __LINE__)
+void fixture_same_bits(const char *what, long at, const void *device, const void *host,
+    size_t bytes, const char *file, int line);
 
 #endif

@@ -4,7 +4,8 @@
 
 void lists_open(struct lists *l)
 {
-    static const char *const sources[] = {"scan.cl", "cells.cl", "rows.cl", "pairs.cl", "records.cl", "select.cl", "wall_lists.cl", NULL};
+    static const char *const sources[] = {"scan.cl", "cells.cl", "rows.cl", "pairs.cl",
+        "records.cl", "select.cl", "wall_lists.cl", NULL};
     static const char *const force[] = {"layout.cl", NULL};
     double period[3], domain[6] = {0, 0, 0, LISTS_PERIOD, LISTS_PERIOD, LISTS_PERIOD};
     l->features = fixture_features();
@@ -31,8 +32,8 @@ void lists_close(struct lists *l)
 
 struct crowd crowd_create(int n_owned, int n_all)
 {
-    struct crowd c = {n_owned, n_all, fail_alloc((size_t)n_all * sizeof *c.element), fail_alloc((size_t)n_all * sizeof *c.gid),
-        fail_alloc((size_t)n_all * sizeof *c.reach)};
+    struct crowd c = {n_owned, n_all, fail_alloc((size_t)n_all * sizeof *c.element),
+        fail_alloc((size_t)n_all * sizeof *c.gid), fail_alloc((size_t)n_all * sizeof *c.reach)};
     return c;
 }
 
@@ -46,7 +47,8 @@ void crowd_free(struct crowd *c)
 bool crowd_meet(const struct crowd *c, int a, int b)
 {
     const preal *x = c->element[a].x, *y = c->element[b].x, r = c->reach[a] + c->reach[b];
-    pvec3 d = nearest_images(p3(y[0] - x[0], y[1] - x[1], y[2] - x[2]), (preal)LISTS_PERIOD, (preal)LISTS_PERIOD, (preal)LISTS_PERIOD);
+    pvec3 d = nearest_images(p3(y[0] - x[0], y[1] - x[1], y[2] - x[2]), (preal)LISTS_PERIOD,
+        (preal)LISTS_PERIOD, (preal)LISTS_PERIOD);
     return p3_dot(d, d) < r * r;
 }
 

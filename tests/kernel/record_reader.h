@@ -1,5 +1,6 @@
-/* What the force kernels have written, read by the kernel that it is for: gather, once per record, as if each were the only contact of an element.
- * So that tests of forces do not depend on how a record is laid out. */
+/* What the force kernels have written, read by the kernel that it is for: gather, once per record,
+ * as if each were the only contact of an element. So that tests of forces do not depend on how a
+ * record is laid out. */
 #ifndef RECORD_READER_H
 #define RECORD_READER_H
 
@@ -20,8 +21,10 @@ struct reading {
     real force[4], torque[4];
 };
 
-/* out [2 n_pair + n_wall]: lower (i) and higher id of each pair, then each wall contact. A buffer may be NULL where its number is 0. The pairs' has
- * n_pair + 1 records, the last of which is zero. */
-void reader_read(struct reader *r, struct buffer *pair_result, int n_pair, struct buffer *wall_result, int n_wall, struct reading *out);
+/* out [2 n_pair + n_wall]: lower (i) and higher id of each pair, then each wall contact. A buffer
+ * may be NULL where its number is 0. The pairs' has n_pair + 1 records, the last of which is
+ * zero. */
+void reader_read(struct reader *r, struct buffer *pair_result, int n_pair,
+    struct buffer *wall_result, int n_wall, struct reading *out);
 
 #endif

@@ -1,4 +1,5 @@
-/* Which of its two ranks computes a pair that a border cuts, where such pairs are then, and in what order their results travel, by brute force. */
+/* Which of its two ranks computes a pair that a border cuts, where such pairs are then, and in what
+ * order their results travel, by brute force. */
 #include "lists_fixture.h"
 
 #include "comm/fail.h"
@@ -20,7 +21,8 @@ struct state {
 
 static struct crowd make(int n_owned, double reach)
 {
-    struct crowd c = crowd_create(n_owned, n_owned + n_of_segment[0] + n_of_segment[1] + n_of_segment[2]);
+    struct crowd c =
+        crowd_create(n_owned, n_owned + n_of_segment[0] + n_of_segment[1] + n_of_segment[2]);
     for (int e = 0; e < c.n_all; e++) {
         for (int a = 0; a < 3; a++) c.element[e].x[a] = (preal)scratch_random(&seed, 0, 1);
         c.reach[e] = (preal)(reach * scratch_random(&seed, 0.5, 1));
@@ -78,7 +80,8 @@ static void run_rule(struct state *s)
 static void run_order(struct state *s)
 {
     struct pair_list *l = &lists.pairs->now;
-    struct launch *place = launch_create(program, "assign_place"), *link = launch_create(program, "assign_link");
+    struct launch *place = launch_create(program, "assign_place"),
+                  *link = launch_create(program, "assign_link");
     s->n_mine = s->n - (int)scan_total(lists.dev, lists.scan, &s->buffer[2], s->n);
     launch_set_int(place, "n", s->n);
     launch_set_int(place, "first", s->first);
@@ -99,11 +102,13 @@ static void run_order(struct state *s)
     launch_free(link);
 }
 
-/* Pairs of this rank first, both kinds in the order that they had; and the gather's list still names the same pairs. */
+/* Pairs of this rank first, both kinds in the order that they had; and the gather's list still
+ * names the same pairs. */
 static void check_order(const struct state *s, const int *incidence_before)
 {
     const struct pair_list *l = &lists.pairs->now;
-    int *i = lists_ints(&lists, &l->pair_i, s->first + s->n), *j = lists_ints(&lists, &l->pair_j, s->first + s->n),
+    int *i = lists_ints(&lists, &l->pair_i, s->first + s->n),
+        *j = lists_ints(&lists, &l->pair_j, s->first + s->n),
         at[2] = {s->first, s->first + s->n_mine};
     for (int p = s->first; p < s->first + s->n; p++) {
         int to = at[s->theirs[p]]++;
@@ -122,11 +127,14 @@ static void check_order(const struct state *s, const int *incidence_before)
     free(incidence);
 }
 
-/* Of these elements, in segments with partners of their own: pairs of one kind, by the partner's id. */
-static void check_list(struct state *s, const int *element, const int *begin, const cl_int2 *range, int theirs)
+/* Of these elements, in segments with partners of their own: pairs of one kind, by the partner's
+ * id. */
+static void check_list(
+    struct state *s, const int *element, const int *begin, const cl_int2 *range, int theirs)
 {
     const struct pair_list *l = &lists.pairs->now;
-    int n = begin[N_SEGMENT], at = 0, *i = lists_ints(&lists, &l->pair_i, s->first + s->n), *j = lists_ints(&lists, &l->pair_j, s->first + s->n);
+    int n = begin[N_SEGMENT], at = 0, *i = lists_ints(&lists, &l->pair_i, s->first + s->n),
+        *j = lists_ints(&lists, &l->pair_j, s->first + s->n);
     struct launch *k = launch_create(program, "assign_list");
     struct buffer buffer[5];
     fixture_bind(lists.dev, k, &buffer[0], "segment", (N_SEGMENT + 1) * sizeof *begin, begin);
@@ -143,21 +151,25 @@ static void check_list(struct state *s, const int *element, const int *begin, co
     const struct {
         const char *name;
         int value;
-    } set[] = {{"n_element", n}, {"n_owned", s->c.n_owned}, {"first_theirs", s->first + s->n_mine}, {"is_theirs", theirs}, {"n_segment", N_SEGMENT}};
-    for (size_t m = 0; m < sizeof set / sizeof *set; m++) launch_set_int(k, set[m].name, set[m].value);
+    } set[] = {{"n_element", n}, {"n_owned", s->c.n_owned}, {"first_theirs", s->first + s->n_mine},
+        {"is_theirs", theirs}, {"n_segment", N_SEGMENT}};
+    for (size_t m = 0; m < sizeof set / sizeof *set; m++)
+        launch_set_int(k, set[m].name, set[m].value);
     for (int fill = 0; fill < 2; fill++) {
         launch_set_int(k, "fill", fill);
         launch_run(k, lists.dev->compute, n, 0, NULL, NULL);
         if (!fill) scan_total(lists.dev, lists.scan, &buffer[3], n);
     }
-    int *list = lists_ints(&lists, &buffer[4], s->n), *count = lists_ints(&lists, &buffer[3], n + 1);
+    int *list = lists_ints(&lists, &buffer[4], s->n),
+        *count = lists_ints(&lists, &buffer[3], n + 1);
     for (int m = 0; m < n; m++) {
         int segment = 0, e = element[m];
         while (m >= begin[segment + 1]) segment++;
         int64_t before = -1;
         for (; at < count[m + 1]; at++) {
             int p = list[at], other = i[p] == e ? j[p] : i[p];
-            assert_true((i[p] == e || j[p] == e) && (p >= s->first + s->n_mine) == theirs && s->c.gid[other] > before);
+            assert_true((i[p] == e || j[p] == e) && (p >= s->first + s->n_mine) == theirs &&
+                        s->c.gid[other] > before);
             assert_in_range(other, range[segment].s[0], range[segment].s[1] - 1);
             before = s->c.gid[other];
         }
@@ -167,7 +179,8 @@ static void check_list(struct state *s, const int *element, const int *begin, co
         for (int m = 0, segment = 0; m < n; m++) {
             while (m >= begin[segment + 1]) segment++;
             int other = i[p] == element[m] ? j[p] : j[p] == element[m] ? i[p] : -1;
-            n_wanted += other >= range[segment].s[0] && other < range[segment].s[1] && (p >= s->first + s->n_mine) == theirs;
+            n_wanted += other >= range[segment].s[0] && other < range[segment].s[1] &&
+                        (p >= s->first + s->n_mine) == theirs;
         }
     assert_int_equal(at, n_wanted);
     for (int b = 0; b < 5; b++) buffer_free(lists.dev, &buffer[b]);
@@ -176,10 +189,12 @@ static void check_list(struct state *s, const int *element, const int *begin, co
     for (int b = 0; b < 4; b++) free(own[b]);
 }
 
-/* Ghosts, each with owned partners; and every third owned element for each segment, with the ghosts of it. */
+/* Ghosts, each with owned partners; and every third owned element for each segment, with the ghosts
+ * of it. */
 static void check_lists(struct state *s)
 {
-    int n_ghost = s->c.n_all - s->c.n_owned, each = s->c.n_owned / 3, *element = fail_alloc((size_t)s->c.n_all * sizeof *element);
+    int n_ghost = s->c.n_all - s->c.n_owned, each = s->c.n_owned / 3,
+        *element = fail_alloc((size_t)s->c.n_all * sizeof *element);
     int begin[N_SEGMENT + 1] = {0};
     cl_int2 range[N_SEGMENT];
     for (int k = 0; k < n_ghost; k++) element[k] = s->c.n_owned + k;

@@ -1,5 +1,5 @@
-/* Histories of pairs through a list build: every pair that is in the old lists and in the new ones keeps its own, whatever became of the order of
- * elements;
+/* Histories of pairs through a list build: every pair that is in the old lists and in the new ones
+ * keeps its own, whatever became of the order of elements;
  * those of elements that leave and arrive go with them. All others begin with zeros. */
 #include "lists_fixture.h"
 
@@ -15,7 +15,8 @@ static double uniform(double low, double high)
     return scratch_random(&seed, low, high);
 }
 
-/* What the pair of these two remembers: nothing, or its last plane alone (a dashpot that acts just before the touch), or a state and all planes. */
+/* What the pair of these two remembers: nothing, or its last plane alone (a dashpot that acts just
+ * before the touch), or a state and all planes. */
 static int kind_of(int64_t a, int64_t b)
 {
     int64_t low = a < b ? a : b, high = a < b ? b : a;
@@ -30,11 +31,13 @@ static int state_of(int64_t a, int64_t b)
 static real history_of(int64_t a, int64_t b, int plane)
 {
     int64_t low = a < b ? a : b, high = a < b ? b : a;
-    bool kept = kind_of(a, b) > 1 || (kind_of(a, b) == 1 && plane == lists.pairs->layout.history - 1);
+    bool kept =
+        kind_of(a, b) > 1 || (kind_of(a, b) == 1 && plane == lists.pairs->layout.history - 1);
     return kept ? (real)(1 + (101 * low + 13 * high + plane) % 99991) : 0;
 }
 
-static void check_pair(int state, const real *history, int64_t capacity, int64_t p, int64_t a, int64_t b, bool known)
+static void check_pair(
+    int state, const real *history, int64_t capacity, int64_t p, int64_t a, int64_t b, bool known)
 {
     assert_int_equal(state, known ? state_of(a, b) : 0);
     for (int c = 0; c < lists.pairs->layout.history; c++) {
@@ -48,29 +51,34 @@ static void write_histories(const struct crowd *c)
     struct pair_list *l = &lists.pairs->now;
     int width = lists.pairs->layout.history;
     int64_t end = l->first_boundary + l->n_boundary;
-    int *i = lists_ints(&lists, &l->pair_i, end), *j = lists_ints(&lists, &l->pair_j, end), *state = fail_alloc((size_t)l->capacity * sizeof *state);
+    int *i = lists_ints(&lists, &l->pair_i, end), *j = lists_ints(&lists, &l->pair_j, end),
+        *state = fail_alloc((size_t)l->capacity * sizeof *state);
     real *history = fail_alloc((size_t)(l->capacity * width) * sizeof *history);
     for (int64_t p = 0; p < end; p++) {
         if (p >= l->n_interior && p < l->first_boundary) continue;
         state[p] = state_of(c->gid[i[p]], c->gid[j[p]]);
-        for (int k = 0; k < width; k++) history[k * l->capacity + p] = history_of(c->gid[i[p]], c->gid[j[p]], k);
+        for (int k = 0; k < width; k++)
+            history[k * l->capacity + p] = history_of(c->gid[i[p]], c->gid[j[p]], k);
     }
     buffer_write(lists.dev, &l->state, 0, (size_t)l->capacity * sizeof *state, state);
-    buffer_write(lists.dev, &l->history, 0, (size_t)(l->capacity * width) * sizeof *history, history);
+    buffer_write(
+        lists.dev, &l->history, 0, (size_t)(l->capacity * width) * sizeof *history, history);
     free(i);
     free(j);
     free(state);
     free(history);
 }
 
-/* place[old number] -> new number, -1 if gone. Owned ones and ghosts are shuffled among themselves; all move; the last N_NEW owned ones are new. */
+/* place[old number] -> new number, -1 if gone. Owned ones and ghosts are shuffled among themselves;
+ * all move; the last N_NEW owned ones are new. */
 static struct crowd next(const struct crowd *old, int *place)
 {
     struct crowd c = crowd_create(N - N_GONE + N_NEW, old->n_all - N_GONE + N_NEW);
     int shuffled[N + N_GHOST];
     for (int e = 0; e < old->n_all; e++) shuffled[e] = e;
     for (int e = old->n_all - 1; e > 0; e--) {
-        int first = e < N ? 0 : N, other = first + (int)uniform(0, e - first + 1), swap = shuffled[e];
+        int first = e < N ? 0 : N, other = first + (int)uniform(0, e - first + 1),
+            swap = shuffled[e];
         shuffled[e] = shuffled[other];
         shuffled[other] = swap;
     }
@@ -91,7 +99,8 @@ static struct crowd next(const struct crowd *old, int *place)
     return c;
 }
 
-/* old_index: most owned elements stay; the first N_LEAVE old ones and the new ones come as if from another rank, the former with their contacts. */
+/* old_index: most owned elements stay; the first N_LEAVE old ones and the new ones come as if from
+ * another rank, the former with their contacts. */
 static void migrate(const struct crowd *c, const int *place, struct buffer *old_index)
 {
     struct owners_contacts contacts;
@@ -103,12 +112,15 @@ static void migrate(const struct crowd *c, const int *place, struct buffer *old_
     for (int e = 0; e < N; e++)
         if (place[e] >= 0) from[place[e]] = e < N_LEAVE ? N + e : e;
     fixture_buffer(lists.dev, &leaving, "leaving", sizeof index, index);
-    owners_pick_contacts(lists.dev, &contacts, lists.scan, &leaving, N_LEAVE, lists.pairs, NULL, real_bytes);
+    owners_pick_contacts(
+        lists.dev, &contacts, lists.scan, &leaving, N_LEAVE, lists.pairs, NULL, real_bytes);
     for (int e = 0; e < c->n_owned; e++)
         if (from[e] < 0) from[e] = N + n++;
     contacts.begin = fail_realloc(contacts.begin, ((size_t)n + 1) * sizeof *contacts.begin);
-    for (int k = N_LEAVE + 1; k <= n; k++) contacts.begin[k] = contacts.begin[N_LEAVE]; /* new ones have none */
-    owners_store_contacts(lists.dev, &lists.pairs->arrivals, &contacts, n, sizeof(int64_t), lists.pairs->layout.history, real_bytes);
+    /* new ones have none */
+    for (int k = N_LEAVE + 1; k <= n; k++) contacts.begin[k] = contacts.begin[N_LEAVE];
+    owners_store_contacts(lists.dev, &lists.pairs->arrivals, &contacts, n, sizeof(int64_t),
+        lists.pairs->layout.history, real_bytes);
     fixture_buffer(lists.dev, old_index, "old_index", (size_t)c->n_all * sizeof *from, from);
     buffer_free(lists.dev, &leaving);
     free(contacts.begin);
@@ -122,10 +134,13 @@ static void check_histories(const struct crowd *old, const struct crowd *c, cons
 {
     const struct pair_list *l = &lists.pairs->now;
     int64_t end = l->first_boundary + l->n_boundary, n_kept = 0, n_new = 0;
-    int *i = lists_ints(&lists, &l->pair_i, end), *j = lists_ints(&lists, &l->pair_j, end), *state = lists_ints(&lists, &l->state, l->capacity);
+    int *i = lists_ints(&lists, &l->pair_i, end), *j = lists_ints(&lists, &l->pair_j, end),
+        *state = lists_ints(&lists, &l->state, l->capacity);
     int *before = fail_alloc((size_t)c->n_all * sizeof *before);
-    real *history = fail_alloc((size_t)(l->capacity * lists.pairs->layout.history) * sizeof *history);
-    buffer_read(lists.dev, &l->history, 0, (size_t)(l->capacity * lists.pairs->layout.history) * sizeof *history, history);
+    real *history =
+        fail_alloc((size_t)(l->capacity * lists.pairs->layout.history) * sizeof *history);
+    buffer_read(lists.dev, &l->history, 0,
+        (size_t)(l->capacity * lists.pairs->layout.history) * sizeof *history, history);
     for (int e = 0; e < c->n_all; e++) before[e] = -1;
     for (int e = 0; e < old->n_all; e++)
         if (place[e] >= 0) before[place[e]] = e;
@@ -170,7 +185,8 @@ static void histories_follow_their_pairs(void **unused)
     }
 }
 
-/* Contacts that go with an element: those that remember something, by ascending gid of the partner, with the history of that pair. */
+/* Contacts that go with an element: those that remember something, by ascending gid of the partner,
+ * with the history of that pair. */
 static void leaving_contacts(void **unused)
 {
     (void)unused;
@@ -187,14 +203,18 @@ static void leaving_contacts(void **unused)
     lists_build(&lists, &c);
     write_histories(&c);
     fixture_buffer(lists.dev, &leaving, "leaving", sizeof index, index);
-    owners_pick_contacts(lists.dev, &contacts, lists.scan, &leaving, 100, lists.pairs, NULL, sizeof(real));
+    owners_pick_contacts(
+        lists.dev, &contacts, lists.scan, &leaving, 100, lists.pairs, NULL, sizeof(real));
     for (int k = 0; k < 100; k++) {
         int n = 0;
-        for (int b = 0; b < c.n_all; b++) n += b != index[k] && crowd_meet(&c, index[k], b) && kind_of(c.gid[index[k]], c.gid[b]) != 0;
+        for (int b = 0; b < c.n_all; b++)
+            n += b != index[k] && crowd_meet(&c, index[k], b) &&
+                 kind_of(c.gid[index[k]], c.gid[b]) != 0;
         assert_int_equal(contacts.begin[k], at);
         assert_int_equal(contacts.begin[k + 1], at + n);
         for (int first = at; at < first + n; at++) {
-            const real *history = (const real *)(const void *)(contacts.history + (size_t)at * contacts.history_bytes);
+            const real *history = (const real *)(const void *)(contacts.history +
+                                                               (size_t)at * contacts.history_bytes);
             assert_true(at == first || contacts.key[at - 1] < contacts.key[at]);
             assert_int_equal(contacts.state[at], state_of(c.gid[index[k]], contacts.key[at]));
             for (int p = 0; p < width; p++) {
@@ -214,7 +234,8 @@ static void leaving_contacts(void **unused)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(histories_follow_their_pairs), cmocka_unit_test(leaving_contacts)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(histories_follow_their_pairs), cmocka_unit_test(leaving_contacts)};
     lists_open(&lists);
     assert_true(lists.pairs->layout.remembers);
     int failed = cmocka_run_group_tests(tests, NULL, NULL);

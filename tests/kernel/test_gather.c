@@ -1,5 +1,6 @@
-/* gather and kick_drift: sums in the order of the lists, leapfrog against the host bit for bit, the fused step equal to the observed one followed by
- * kick_drift, and when the lists count as used up. Compiled once for each set of features and each precision, see meson.build. */
+/* gather and kick_drift: sums in the order of the lists, leapfrog against the host bit for bit, the
+ * fused step equal to the observed one followed by kick_drift, and when the lists count as used up.
+ * Compiled once for each set of features and each precision, see meson.build. */
 #include "kernel_fixture.h"
 
 #include "comm/fail.h"
@@ -7,18 +8,40 @@
 #include "kernels/particle/incidence.h"
 #include "record_reader.h"
 
-enum { N = 500, N_GHOST = 20, N_PAIR = 3000, N_INCIDENCE = 20000, N_AT_WALL = 800, ROOM = 16 /* real per record, or more */ };
-static const double dt = 1e-3, radius = 0.01, inverse_m = 40, margin = 2e-3, gravity[3] = {0.1, -0.2, -9.81};
+enum {
+    N = 500,
+    N_GHOST = 20,
+    N_PAIR = 3000,
+    N_INCIDENCE = 20000,
+    N_AT_WALL = 800,
+    ROOM = 16 /* real per record, or more */
+};
+static const double dt = 1e-3, radius = 0.01, inverse_m = 40, margin = 2e-3,
+                    gravity[3] = {0.1, -0.2, -9.81};
 static uint64_t seed = 8;
 
-enum { POSITION, INCIDENCE_BEGIN, INCIDENCE, RESULT, WALL_BEGIN, WALL_RESULT, ORIENTATION, FORCE, TORQUE, REFERENCE, FLAGS, N_BUFFER };
-static const char *const buffer_name[N_BUFFER] = {
-    "position", "incidence_begin", "incidence", "result", "wall_begin", "wall_result", "orientation", "force", "torque", "reference", "flags"};
+enum {
+    POSITION,
+    INCIDENCE_BEGIN,
+    INCIDENCE,
+    RESULT,
+    WALL_BEGIN,
+    WALL_RESULT,
+    ORIENTATION,
+    FORCE,
+    TORQUE,
+    REFERENCE,
+    FLAGS,
+    N_BUFFER
+};
+static const char *const buffer_name[N_BUFFER] = {"position", "incidence_begin", "incidence",
+    "result", "wall_begin", "wall_result", "orientation", "force", "torque", "reference", "flags"};
 
 struct test {
     struct record element[N + N_GHOST];
     int incidence_begin[N + 1], incidence[N_INCIDENCE], wall_begin[N + 1], flags[2];
-    real result[N_PAIR + 1][RESULT_WIDTH], wall_result[N_AT_WALL][ROOM], orientation[N][4], force[N][4], torque[N][4];
+    real result[N_PAIR + 1][RESULT_WIDTH], wall_result[N_AT_WALL][ROOM], orientation[N][4],
+        force[N][4], torque[N][4];
     preal reference[N][4];
     struct buffer buffer[N_BUFFER];
 };
@@ -56,7 +79,8 @@ static void set_element(struct test *t, int e)
 #endif
 }
 
-/* Rows of any pairs, from either end; one element has hundreds, some have none, some just fill their eights. */
+/* Rows of any pairs, from either end; one element has hundreds, some have none, some just fill
+ * their eights. */
 static void set_lists(struct test *t)
 {
     int at = 0, wall = 0;
@@ -101,9 +125,11 @@ static void to_device(struct test *t)
     const struct {
         size_t bytes;
         void *data;
-    } array[N_BUFFER] = {{sizeof t->element, t->element}, {sizeof t->incidence_begin, t->incidence_begin}, {sizeof t->incidence, t->incidence},
-        {sizeof t->result, t->result}, {sizeof t->wall_begin, t->wall_begin}, {sizeof t->wall_result, t->wall_result},
-        {sizeof t->orientation, t->orientation}, {sizeof t->force, NULL}, {sizeof t->torque, NULL}, {sizeof t->reference, t->reference},
+    } array[N_BUFFER] = {{sizeof t->element, t->element},
+        {sizeof t->incidence_begin, t->incidence_begin}, {sizeof t->incidence, t->incidence},
+        {sizeof t->result, t->result}, {sizeof t->wall_begin, t->wall_begin},
+        {sizeof t->wall_result, t->wall_result}, {sizeof t->orientation, t->orientation},
+        {sizeof t->force, NULL}, {sizeof t->torque, NULL}, {sizeof t->reference, t->reference},
         {sizeof t->flags, t->flags}};
     struct launch *both[] = {gather, kick_drift};
     for (int b = 0; b < N_BUFFER; b++) {
@@ -124,7 +150,8 @@ static void to_device(struct test *t)
     }
 }
 
-/* A copy of `from` with one step done: fused (0), observed (1), or observed and then kick_drift (2). */
+/* A copy of `from` with one step done: fused (0), observed (1), or observed and then kick_drift
+ * (2). */
 static struct test *step(const struct test *from, int how)
 {
     struct test *t = fail_alloc(sizeof *t);
@@ -170,7 +197,8 @@ static void sums_of(int e, real f[3], real torque[3])
     for (int a = 0; a < 3; a++) f[a] = torque[a] = 0;
     for (int k = start->incidence_begin[e]; k < start->incidence_begin[e + 1]; k++)
         if (start->incidence[k] < 2 * N_PAIR) add(f, torque, &reading[start->incidence[k]]);
-    for (int k = start->wall_begin[e]; k < start->wall_begin[e + 1] && WITH_WALLS; k++) add(f, torque, &reading[2 * N_PAIR + k]);
+    for (int k = start->wall_begin[e]; k < start->wall_begin[e + 1] && WITH_WALLS; k++)
+        add(f, torque, &reading[2 * N_PAIR + k]);
 }
 
 /* v + (dt/2) (F/m + g) */
@@ -190,7 +218,8 @@ static real spun(real w, real torque, const struct record *r)
 
 static void check_element(const struct test *fused, const struct test *observed, int e)
 {
-    const struct record *r = &start->element[e], *seen = &observed->element[e], *after = &fused->element[e];
+    const struct record *r = &start->element[e], *seen = &observed->element[e],
+                        *after = &fused->element[e];
     real f[3], torque[3];
     sums_of(e, f, torque);
     for (int a = 0; a < 3; a++) {
@@ -220,7 +249,8 @@ static void leapfrog_in_list_order(void **state)
     (void)state;
     struct test *fused = step(start, 0), *observed = step(start, 1);
     for (int e = 0; e < N; e++) check_element(fused, observed, e);
-    for (int e = N; e < N + N_GHOST; e++) assert_memory_equal(&fused->element[e], &start->element[e], sizeof *fused->element);
+    for (int e = N; e < N + N_GHOST; e++)
+        assert_memory_equal(&fused->element[e], &start->element[e], sizeof *fused->element);
     free(fused);
     free(observed);
 }
@@ -263,7 +293,8 @@ static void orientation_turns_with_the_spin(void **state)
             error += (now - exact[c]) * (now - exact[c]);
             square += now * now;
         }
-        /* half the angle in the quaternion; where it begins to differ by the fifth power, that is less than a tenth of the third */
+        /* half the angle in the quaternion; where it begins to differ by the fifth power, that is
+         * less than a tenth of the third */
         assert_true(sqrt(error) <= 1.1 * pow(angle, 3) / 96 + 4 * rounding);
         assert_true(fabs(square - 1) < 10 * rounding);
     }
@@ -271,7 +302,8 @@ static void orientation_turns_with_the_spin(void **state)
 #endif
 }
 
-/* Flags after a step that ends at `moved` of the reference's place and with speed `speed` at element e, room 1. */
+/* Flags after a step that ends at `moved` of the reference's place and with speed `speed` at
+ * element e, room 1. */
 static void check_flags(double moved, double speed, bool stale, bool lost)
 {
     for (int how = 0; how < 3; how += 2) {
@@ -308,8 +340,10 @@ static void stale_when_the_room_is_used_up(void **state)
 int main(void)
 {
     static const char *const sources[] = {"gather.cl", NULL};
-    const struct CMUnitTest tests[] = {cmocka_unit_test(leapfrog_in_list_order), cmocka_unit_test(fused_is_observed_and_kick_drift),
-        cmocka_unit_test(orientation_turns_with_the_spin), cmocka_unit_test(stale_when_the_room_is_used_up)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(leapfrog_in_list_order),
+        cmocka_unit_test(fused_is_observed_and_kick_drift),
+        cmocka_unit_test(orientation_turns_with_the_spin),
+        cmocka_unit_test(stale_when_the_room_is_used_up)};
     struct features features = fixture_features();
     dev = fixture_device();
     struct program *program = fixture_program(dev, &features, FEATURES_BODY, sources);

@@ -1,12 +1,15 @@
-/* Which elements are a neighbour's ghosts: by the box of its elements and its leaves in the tree of cuts, which need not be one box. Compiled once
- * for each precision and set of periodic directions, see meson.build. */
+/* Which elements are a neighbour's ghosts: by the box of its elements and its leaves in the tree of
+ * cuts, which need not be one box. Compiled once for each precision and set of periodic directions,
+ * see meson.build. */
 #include "tree_fixture.h"
 
 enum { N = 3000 };
 static struct lists lists;
 
-/* Distance of x from the box, of all its images the nearest: the Euclidean one, and the largest over the axes. */
-static double distance_to(const preal x[3], const double low[3], const double high[3], double *largest)
+/* Distance of x from the box, of all its images the nearest: the Euclidean one, and the largest
+ * over the axes. */
+static double distance_to(
+    const preal x[3], const double low[3], const double high[3], double *largest)
 {
     double square = 0;
     *largest = 0;
@@ -22,8 +25,9 @@ static double distance_to(const preal x[3], const double low[3], const double hi
     return sqrt(square);
 }
 
-/* The leaves that c is or leads to, as boxes within the domain along periodic axes and without end along others. Cuts are random: a box with low
- * above high holds nothing, and its distance is still that of the cuts. */
+/* The leaves that c is or leads to, as boxes within the domain along periodic axes and without end
+ * along others. Cuts are random: a box with low above high holds nothing, and its distance is still
+ * that of the cuts. */
 struct leaf_box {
     double low[3], high[3];
     int owner;
@@ -44,7 +48,8 @@ static int leaves_of(const struct tree *t, int c, struct leaf_box box, struct le
     return n + leaves_of(t, t->right[c], right, out + n);
 }
 
-/* Leaves are owned by half as many ranks, so that some have several, apart from each other. Returns how many there are. */
+/* Leaves are owned by half as many ranks, so that some have several, apart from each other. Returns
+ * how many there are. */
 static int grow_owned(struct tree *t, int n_leaf, struct leaf_box *leaf)
 {
     struct leaf_box all = {{-9, -9, -9}, {9, 9, 9}, 0};
@@ -62,8 +67,9 @@ static int grow_owned(struct tree *t, int n_leaf, struct leaf_box *leaf)
 
 static void set_box(struct launch *k, const double low[3], const double high[3])
 {
-    static const char *const name[2][3] = {{"low_x", "low_y", "low_z"}, {"high_x", "high_y", "high_z"}}, *const axis[] = {
-                                                                                                             "period_x", "period_y", "period_z"};
+    static const char *const name[2][3] = {{"low_x", "low_y", "low_z"},
+        {"high_x", "high_y", "high_z"}},
+                             *const axis[] = {"period_x", "period_y", "period_z"};
     for (int a = 0; a < 3; a++) {
         launch_set_real(k, name[0][a], low[a]);
         launch_set_real(k, name[1][a], high[a]);
@@ -71,9 +77,10 @@ static void set_box(struct launch *k, const double low[3], const double high[3])
     }
 }
 
-/* All that a neighbour may need, whose elements are in the box and in its leaves, and none that is further from the box, or along some axis from all
- * leaves, by more than a thousandth. */
-static void check_ghosts(struct launch *k, const struct buffer *at, int n_leaf, double far_reach, int *n_taken)
+/* All that a neighbour may need, whose elements are in the box and in its leaves, and none that is
+ * further from the box, or along some axis from all leaves, by more than a thousandth. */
+static void check_ghosts(
+    struct launch *k, const struct buffer *at, int n_leaf, double far_reach, int *n_taken)
 {
     struct crowd c = tree_crowd(N, 0);
     struct tree t;
@@ -96,7 +103,8 @@ static void check_ghosts(struct launch *k, const struct buffer *at, int n_leaf, 
     launch_run(k, lists.dev->compute, N, 0, NULL, NULL);
     int *taken = lists_ints(&lists, at, N);
     for (int e = 0; e < N; e++) {
-        double unused, along, reach = (double)c.reach[e] + far_reach, from_box = distance_to(c.element[e].x, low, high, &unused);
+        double unused, along, reach = (double)c.reach[e] + far_reach,
+                              from_box = distance_to(c.element[e].x, low, high, &unused);
         bool is_needed = false, is_near = false;
         for (int b = 0; b < n_box; b++) {
             double both_low[3], both_high[3];
@@ -109,7 +117,8 @@ static void check_ghosts(struct launch *k, const struct buffer *at, int n_leaf, 
                 both_high[a] = fmin(high[a], leaf[b].high[a]);
                 is_empty |= both_low[a] > both_high[a];
             }
-            is_needed |= !is_empty && distance_to(c.element[e].x, both_low, both_high, &along) < reach;
+            is_needed |=
+                !is_empty && distance_to(c.element[e].x, both_low, both_high, &along) < reach;
         }
         assert_in_range(taken[e], 0, 1);
         if (is_needed) assert_int_equal(taken[e], 1);
@@ -128,7 +137,8 @@ static void ghosts_within_reach_of_box_and_leaves(void **state)
     int n_taken = 0;
     (void)state;
     fixture_bind(lists.dev, k, &at, "at", (N + 1) * sizeof(int), NULL);
-    for (int box = 0; box < 40; box++) check_ghosts(k, &at, box < 4 ? 1 : TREE_LEAVES, box % 2 ? 0.03 : 0.2, &n_taken);
+    for (int box = 0; box < 40; box++)
+        check_ghosts(k, &at, box < 4 ? 1 : TREE_LEAVES, box % 2 ? 0.03 : 0.2, &n_taken);
     assert_true(n_taken > N / 2 && n_taken < 39 * N);
     buffer_free(lists.dev, &at);
     launch_free(k);

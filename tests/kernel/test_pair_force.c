@@ -1,11 +1,18 @@
-/* pair_force against contact_law on the host, bit for bit, over several steps: pairs that touch, part, are bonded, are far from each other or
- * coincide; in both ways of going over a batch.
+/* pair_force against contact_law on the host, bit for bit, over several steps: pairs that touch,
+ * part, are bonded, are far from each other or coincide; in both ways of going over a batch.
  * Compiled once for each set of features and each precision, see meson.build. */
 #include "contact_scene.h"
 #include "comm/fail.h"
 #include "record_reader.h"
 
-enum { N_PAIR = 700, N_INTERIOR = 333, FIRST_BOUNDARY = 384, N_ELEMENT = 2 * N_PAIR, CAPACITY = 720, N_STEP = 5 };
+enum {
+    N_PAIR = 700,
+    N_INTERIOR = 333,
+    FIRST_BOUNDARY = 384,
+    N_ELEMENT = 2 * N_PAIR,
+    CAPACITY = 720,
+    N_STEP = 5
+};
 static const double radius = 2e-3, period[3] = {0.11, 0.12, 0.13};
 static uint64_t seed = 20;
 
@@ -63,7 +70,8 @@ static void place_pair(struct test *t, int p)
         for (int a = 0; a < 3; a++) d[a] = any();
         length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     } while (length < 0.1);
-    double apart = p % 100 == 50 ? 0 : (double)i->radius + (double)j->radius + gap; /* a few coincide */
+    /* a few coincide */
+    double apart = p % 100 == 50 ? 0 : (double)i->radius + (double)j->radius + gap;
     for (int a = 0; a < 3; a++) {
         double x = (double)i->x[a] + apart * d[a] / length;
         if (periodic[a] && p % 3 == 0) x += x < 0.5 * period[a] ? period[a] : -period[a];
@@ -100,10 +108,12 @@ static void set_state(struct test *t)
         place_pair(t, p);
         set_history(t, p);
     }
-    for (int p = 0; p < N_PAIR; p += 20) t->pair_j[p] = (int)scratch_random(&seed, 0, N_ELEMENT); /* somewhere else */
+    /* somewhere else */
+    for (int p = 0; p < N_PAIR; p += 20) t->pair_j[p] = (int)scratch_random(&seed, 0, N_ELEMENT);
     for (int a = 0; a < N_MATERIAL; a++)
         for (int b = 0; b < N_MATERIAL; b++)
-            contact_scene_row(&t->contacts, a, b, false, radius, 1 / (double)t->element[0].inverse_m, t->row[N_MATERIAL * a + b]);
+            contact_scene_row(&t->contacts, a, b, false, radius,
+                1 / (double)t->element[0].inverse_m, t->row[N_MATERIAL * a + b]);
 }
 
 static void set_arguments(struct test *t)
@@ -122,7 +132,8 @@ static void set_arguments(struct test *t)
     fixture_bind(dev, k, &t->buffer[4], "history", sizeof t->history, t->history);
     fixture_bind(dev, k, &t->buffer[5], "ledger", sizeof t->ledger, t->ledger);
     fixture_bind(dev, k, &t->buffer[6], "table", sizeof table, table);
-    fixture_bind(dev, k, &t->buffer[7], "result", RESULT_WIDTH * (CAPACITY + 1) * sizeof(real), NULL);
+    fixture_bind(
+        dev, k, &t->buffer[7], "result", RESULT_WIDTH * (CAPACITY + 1) * sizeof(real), NULL);
     launch_set_int(k, "capacity", CAPACITY);
     launch_set_int_if(k, "n_material", N_MATERIAL);
     for (int a = 0; a < 3; a++) launch_set_real_if(k, axis[a], period[a]);
@@ -148,14 +159,16 @@ static struct host_pair law_of(const struct test *t, int p)
     w_j = v3(j->w[0], j->w[1], j->w[2]);
     row = WITH_MATERIALS ? N_MATERIAL * (int)i->material + (int)j->material : 0;
 #endif
-    pvec3 D = nearest_images(p3(j->x[0] - i->x[0], j->x[1] - i->x[1], j->x[2] - i->x[2]), (preal)period[0], (preal)period[1], (preal)period[2]);
+    pvec3 D = nearest_images(p3(j->x[0] - i->x[0], j->x[1] - i->x[1], j->x[2] - i->x[2]),
+        (preal)period[0], (preal)period[1], (preal)period[2]);
     struct contact_parameters q;
     if (WITH_SIZES)
-        q = contact_parameters_of(
-            contact_scene_material(t->row[row]), contact_pair_of(i->inverse_m, j->inverse_m, (real)i->radius, (real)j->radius), (real)STEP);
+        q = contact_parameters_of(contact_scene_material(t->row[row]),
+            contact_pair_of(i->inverse_m, j->inverse_m, (real)i->radius, (real)j->radius),
+            (real)STEP);
     else q = contact_scene_parameters(t->row[row]);
-    host.k = contact_kinematics_pair(
-        D, v3(i->v[0], i->v[1], i->v[2]), v3(j->v[0], j->v[1], j->v[2]), w_i, w_j, (real)i->radius, (real)j->radius, (real)STEP);
+    host.k = contact_kinematics_pair(D, v3(i->v[0], i->v[1], i->v[2]),
+        v3(j->v[0], j->v[1], j->v[2]), w_i, w_j, (real)i->radius, (real)j->radius, (real)STEP);
     host.h = contact_scene_history(t->state, t->history, CAPACITY, (size_t)p);
     host.r = contact_law(host.k, q, (real)STEP, &host.h);
     return host;
@@ -165,12 +178,17 @@ static struct host_pair law_of(const struct test *t, int p)
 static void check_record(int p, const struct reading *side, struct host_pair host)
 {
     vec3 zero = v3(0, 0, 0), f = host.r.force;
-    vec3 ti = v3_fma(host.k.l_i, host.r.couple, host.r.moment), tj = v3_fma(host.k.l_j, host.r.couple, v3_neg(host.r.moment));
-    contact_scene_same("force on i", p, v3(side[0].force[0], side[0].force[1], side[0].force[2]), v3_add(zero, f));
-    contact_scene_same("force on j", p, v3(side[1].force[0], side[1].force[1], side[1].force[2]), v3_sub(zero, f));
+    vec3 ti = v3_fma(host.k.l_i, host.r.couple, host.r.moment),
+         tj = v3_fma(host.k.l_j, host.r.couple, v3_neg(host.r.moment));
+    contact_scene_same(
+        "force on i", p, v3(side[0].force[0], side[0].force[1], side[0].force[2]), v3_add(zero, f));
+    contact_scene_same(
+        "force on j", p, v3(side[1].force[0], side[1].force[1], side[1].force[2]), v3_sub(zero, f));
     if (!WITH_ROTATION) return;
-    contact_scene_same("torque on i", p, v3(side[0].torque[0], side[0].torque[1], side[0].torque[2]), v3_add(zero, ti));
-    contact_scene_same("torque on j", p, v3(side[1].torque[0], side[1].torque[1], side[1].torque[2]), v3_add(zero, tj));
+    contact_scene_same("torque on i", p,
+        v3(side[0].torque[0], side[0].torque[1], side[0].torque[2]), v3_add(zero, ti));
+    contact_scene_same("torque on j", p,
+        v3(side[1].torque[0], side[1].torque[1], side[1].torque[2]), v3_add(zero, tj));
 }
 
 static void run(struct test *t, real *result)
@@ -257,7 +275,8 @@ static void check_law(bool one_lane)
         check_step(t);
         move(t);
     }
-    assert_true(t->n_touching > 500 && t->n_apart > 300 && t->n_begun > 20); /* all kinds were there */
+    /* all kinds were there */
+    assert_true(t->n_touching > 500 && t->n_apart > 300 && t->n_begun > 20);
     if (WITH_HISTORY) assert_true(t->n_ended > 20);
     reader_close(&t->reader);
     launch_free(t->launch);
@@ -281,6 +300,7 @@ static void batch_by_many_lanes(void **unused)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(batch_by_one_lane), cmocka_unit_test(batch_by_many_lanes)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(batch_by_one_lane), cmocka_unit_test(batch_by_many_lanes)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
-/* Cells, neighbour rows and pairs against brute force: equal and very unequal sizes, clusters, one huge element, ghosts, periodic directions.
- * Compiled once for each set of periodic directions and each precision, see meson.build. */
+/* Cells, neighbour rows and pairs against brute force: equal and very unequal sizes, clusters, one
+ * huge element, ghosts, periodic directions. Compiled once for each set of periodic directions and
+ * each precision, see meson.build. */
 #include "lists_fixture.h"
 
 #include "comm/fail.h"
@@ -25,7 +26,8 @@ static void set_gids(struct crowd *c)
     }
 }
 
-/* Positions within `box` about the middle of the unit cube, reaches from small to large (equal: all alike). */
+/* Positions within `box` about the middle of the unit cube, reaches from small to large (equal: all
+ * alike). */
 static struct crowd make(int n_owned, int n_all, double box, double small, double large)
 {
     struct crowd c = crowd_create(n_owned, n_all);
@@ -43,8 +45,10 @@ static struct crowd make(int n_owned, int n_all, double box, double small, doubl
 static void check_cells(const struct crowd *c)
 {
     int64_t n_cell = lists.cells->n_cell;
-    int *begin = lists_ints(&lists, &lists.cells->begin, n_cell + 1), *member = lists_ints(&lists, &lists.cells->member, c->n_all);
-    int *key = lists_ints(&lists, &lists.cells->key, c->n_all), *seen = fail_alloc((size_t)c->n_all * sizeof *seen);
+    int *begin = lists_ints(&lists, &lists.cells->begin, n_cell + 1),
+        *member = lists_ints(&lists, &lists.cells->member, c->n_all);
+    int *key = lists_ints(&lists, &lists.cells->key, c->n_all),
+        *seen = fail_alloc((size_t)c->n_all * sizeof *seen);
     assert_int_equal(begin[0], 0);
     assert_int_equal(begin[n_cell], c->n_all);
     for (int64_t cell = 0; cell < n_cell; cell++)
@@ -59,11 +63,13 @@ static void check_cells(const struct crowd *c)
     free(seen);
 }
 
-/* Exactly the neighbours, ascending in gid; a pair of two ghosts is nobody's here. Returns how many entries there are. */
+/* Exactly the neighbours, ascending in gid; a pair of two ghosts is nobody's here. Returns how many
+ * entries there are. */
 static int64_t check_rows(const struct crowd *c)
 {
     const struct pair_list *l = &lists.pairs->now;
-    int *begin = lists_ints(&lists, &l->row_begin, c->n_all + 1), *row = lists_ints(&lists, &l->row, l->n_row);
+    int *begin = lists_ints(&lists, &l->row_begin, c->n_all + 1),
+        *row = lists_ints(&lists, &l->row, l->n_row);
     int64_t *gid = fail_alloc((size_t)l->n_row * sizeof *gid);
     char *is_in = fail_alloc((size_t)c->n_all);
     buffer_read(lists.dev, &l->row_gid, 0, (size_t)l->n_row * sizeof *gid, gid);
@@ -77,7 +83,8 @@ static int64_t check_rows(const struct crowd *c)
         }
         for (int b = 0; b < c->n_all; b++) {
             bool wanted = b != e && (e < c->n_owned || b < c->n_owned) && crowd_meet(c, e, b);
-            if (is_in[b] != wanted) fail_msg("row of %d: %d is %sthere", e, b, is_in[b] ? "" : "not ");
+            if (is_in[b] != wanted)
+                fail_msg("row of %d: %d is %sthere", e, b, is_in[b] ? "" : "not ");
         }
     }
     int64_t n = l->n_row;
@@ -88,9 +95,8 @@ static int64_t check_rows(const struct crowd *c)
     return n;
 }
 
-/* Pairs p of the list, lower gid first, ascending by the lower's storage and the partner's gid; each once; interior ones have no ghost and boundary
- * ones
- * begin at a multiple of 64. */
+/* Pairs p of the list, lower gid first, ascending by the lower's storage and the partner's gid;
+ * each once; interior ones have no ghost and boundary ones begin at a multiple of 64. */
 static void check_pairs(const struct crowd *c, int64_t n_row)
 {
     const struct pair_list *l = &lists.pairs->now;
@@ -99,12 +105,14 @@ static void check_pairs(const struct crowd *c, int64_t n_row)
     int *up = lists_ints(&lists, &l->up_begin, c->n_all);
     int64_t n = 0;
     assert_int_equal(2 * (l->n_interior + l->n_boundary), n_row);
-    assert_true(l->first_boundary % 64 == 0 && l->first_boundary >= l->n_interior && l->first_boundary < l->n_interior + 64 && l->capacity >= end);
+    assert_true(l->first_boundary % 64 == 0 && l->first_boundary >= l->n_interior &&
+                l->first_boundary < l->n_interior + 64 && l->capacity >= end);
     for (int e = 0; e < c->n_all; e++) {
         bool interior = up[e] < l->first_boundary, has_ghost = e >= c->n_owned;
         int p = up[e];
         for (; p < (interior ? l->n_interior : end) && i[p] == e; p++, n++) {
-            assert_true(c->gid[i[p]] < c->gid[j[p]] && crowd_meet(c, i[p], j[p]) && (e < c->n_owned || j[p] < c->n_owned));
+            assert_true(c->gid[i[p]] < c->gid[j[p]] && crowd_meet(c, i[p], j[p]) &&
+                        (e < c->n_owned || j[p] < c->n_owned));
             assert_true(p == up[e] || c->gid[j[p - 1]] < c->gid[j[p]]);
             has_ghost |= j[p] >= c->n_owned;
         }
@@ -127,19 +135,22 @@ static void check_blank(int64_t pair)
     free(record);
 }
 
-/* The gather's row of an element: its pairs, all of them, ascending by the gid of the partner, then blanks. */
+/* The gather's row of an element: its pairs, all of them, ascending by the gid of the partner, then
+ * blanks. */
 static void check_links(const struct crowd *c)
 {
     const struct pair_list *l = &lists.pairs->now;
     int64_t end = l->first_boundary + l->n_boundary;
     int *i = lists_ints(&lists, &l->pair_i, end), *j = lists_ints(&lists, &l->pair_j, end);
-    int *begin = lists_ints(&lists, &l->incidence_begin, c->n_owned + 1), *incidence = lists_ints(&lists, &l->incidence, l->n_incidence);
+    int *begin = lists_ints(&lists, &l->incidence_begin, c->n_owned + 1),
+        *incidence = lists_ints(&lists, &l->incidence, l->n_incidence);
     assert_int_equal(begin[c->n_owned], l->n_incidence);
     for (int e = 0; e < c->n_owned; e++) {
         int n = 0, n_padded = begin[e + 1] - begin[e];
         int64_t before = -1;
         for (int b = 0; b < c->n_all; b++) n += b != e && crowd_meet(c, e, b);
-        assert_true(n_padded % INCIDENCE_ALIGN == 0 && n_padded >= n && n_padded < n + INCIDENCE_ALIGN);
+        assert_true(
+            n_padded % INCIDENCE_ALIGN == 0 && n_padded >= n && n_padded < n + INCIDENCE_ALIGN);
         for (int k = 0; k < n_padded; k++) {
             int pair = incidence[begin[e] + k] / 2, is_down = incidence[begin[e] + k] % 2;
             if (k >= n) {
@@ -235,9 +246,10 @@ static void thick_ones(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(equal_sizes), cmocka_unit_test(one_to_twenty), cmocka_unit_test(a_point_like_cluster),
-        cmocka_unit_test(a_huge_one_among_thousands), cmocka_unit_test(few_and_flat), cmocka_unit_test(beyond_the_boundary),
-        cmocka_unit_test(thick_ones)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(equal_sizes),
+        cmocka_unit_test(one_to_twenty), cmocka_unit_test(a_point_like_cluster),
+        cmocka_unit_test(a_huge_one_among_thousands), cmocka_unit_test(few_and_flat),
+        cmocka_unit_test(beyond_the_boundary), cmocka_unit_test(thick_ones)};
     lists_open(&lists);
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     lists_close(&lists);

@@ -10,7 +10,8 @@ static uint64_t seed = 1;
 
 static void check(int64_t n, int largest)
 {
-    cl_int *value = fail_alloc(((size_t)n + 2) * sizeof *value), *got = fail_alloc(((size_t)n + 2) * sizeof *got);
+    cl_int *value = fail_alloc(((size_t)n + 2) * sizeof *value),
+           *got = fail_alloc(((size_t)n + 2) * sizeof *got);
     struct buffer data;
     for (int64_t i = 0; i < n + 2; i++) value[i] = (cl_int)scratch_random(&seed, 0, largest + 1);
     fixture_buffer(dev, &data, "data", ((size_t)n + 2) * sizeof *value, value);
@@ -29,7 +30,8 @@ static void check(int64_t n, int largest)
 
 static void sums_of_what_stood_before(void **state)
 {
-    static const int64_t size[] = {0, 1, 2, 7, 8, 9, 255, 256, 2047, 2048, 2049, 4096, 6145, 1000000};
+    static const int64_t size[] = {
+        0, 1, 2, 7, 8, 9, 255, 256, 2047, 2048, 2049, 4096, 6145, 1000000};
     (void)state;
     for (size_t k = 0; k < sizeof size / sizeof *size; k++) check(size[k], 1000);
     for (int k = 0; k < 20; k++) check((int64_t)scratch_random(&seed, 0, 20000), k % 2);

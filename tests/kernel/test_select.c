@@ -1,5 +1,5 @@
-/* Records moved by index, owners by a tree of cuts, bounds, room: each against the host. Compiled once for each precision and set of periodic
- * directions, see meson.build. */
+/* Records moved by index, owners by a tree of cuts, bounds, room: each against the host. Compiled
+ * once for each precision and set of periodic directions, see meson.build. */
 #include "tree_fixture.h"
 
 enum { N = 3000 };
@@ -17,7 +17,8 @@ static void records_follow_an_index(void **state)
     particles_reserve_spare(lists.dev, lists.particles, N);
     particles_permute(lists.dev, lists.particles, &index, N);
     particles_swap(lists.particles);
-    buffer_read(lists.dev, &lists.particles->field[FIELD_STATE].now, 0, N * sizeof *got.element, got.element);
+    buffer_read(lists.dev, &lists.particles->field[FIELD_STATE].now, 0, N * sizeof *got.element,
+        got.element);
     buffer_read(lists.dev, &lists.particles->field[FIELD_GID].now, 0, N * sizeof *got.gid, got.gid);
     for (int e = 0; e < N; e++) {
         assert_memory_equal(&got.element[e], &c.element[from[e]], sizeof *got.element);
@@ -28,13 +29,15 @@ static void records_follow_an_index(void **state)
     crowd_free(&got);
 }
 
-/* Flags, scanned, make the list of those that are set. Behind them nothing is written. Numbers count from where they shall. */
+/* Flags, scanned, make the list of those that are set. Behind them nothing is written. Numbers
+ * count from where they shall. */
 static void selected_and_numbered(void **state)
 {
     (void)state;
     int flag[N + 1] = {0}, got[N], n_set = 0;
     struct buffer at, index;
-    struct launch *select = launch_create(lists.program, "record_select"), *number = launch_create(lists.program, "record_number");
+    struct launch *select = launch_create(lists.program, "record_select"),
+                  *number = launch_create(lists.program, "record_number");
     for (int e = 0; e < N; e++) n_set += flag[e] = e == 0 || e == N - 1 || tree_random(0, 1) < 0.3;
     fixture_buffer(lists.dev, &at, "at", sizeof flag, flag);
     fixture_buffer(lists.dev, &index, "index", sizeof got, NULL);
@@ -66,7 +69,8 @@ struct owned {
     struct record element[N];
 };
 
-static void run_owner(const struct crowd *c, const struct tree *t, int rank, bool remove, struct owned *out)
+static void run_owner(
+    const struct crowd *c, const struct tree *t, int rank, bool remove, struct owned *out)
 {
     struct launch *k = launch_create(lists.program, "select_owner");
     struct buffer buffer[6];
@@ -85,7 +89,8 @@ static void run_owner(const struct crowd *c, const struct tree *t, int rank, boo
     buffer_read(lists.dev, &buffer[3], 0, sizeof out->owner, out->owner);
     buffer_read(lists.dev, &buffer[4], 0, sizeof out->stay, out->stay);
     buffer_read(lists.dev, &buffer[5], 0, sizeof out->leave, out->leave);
-    buffer_read(lists.dev, &lists.particles->field[FIELD_STATE].now, 0, sizeof out->element, out->element);
+    buffer_read(
+        lists.dev, &lists.particles->field[FIELD_STATE].now, 0, sizeof out->element, out->element);
     for (int b = 0; b < 6; b++) buffer_free(lists.dev, &buffer[b]);
     launch_free(k);
 }
@@ -119,8 +124,10 @@ static void check_owner(int n_rank, double beyond, bool remove)
         assert_int_equal(got.leave[e], owner != n_rank / 2);
         n_out += outside;
     }
-    bool all = tree_periodic[0] && tree_periodic[1] && tree_periodic[2], none = !tree_periodic[0] && !tree_periodic[1] && !tree_periodic[2];
-    if (beyond > 0) assert_true((all ? n_out == 0 : n_out > 10) && (none ? n_wrapped == 0 : n_wrapped > 10));
+    bool all = tree_periodic[0] && tree_periodic[1] && tree_periodic[2],
+         none = !tree_periodic[0] && !tree_periodic[1] && !tree_periodic[2];
+    if (beyond > 0)
+        assert_true((all ? n_out == 0 : n_out > 10) && (none ? n_wrapped == 0 : n_wrapped > 10));
     crowd_free(&c);
 }
 
@@ -158,8 +165,12 @@ static void bounds_of_all(void **state)
         for (int a = 0; a < 3; a++) assert_true(b.low[a] == low[a] && b.high[a] == high[a]);
         assert_true(b.reach_min == reach[0] && b.reach_max == reach[1] && !b.has_nan);
         assert_true(b.speed == sqrt((double)(preal)fastest));
-        for (int bad = 0; bad < 4; bad++) { /* one number of one element, the first, a middle or the last one */
-            struct record *r = &c.element[bad == 0 ? 0 : bad == 1 ? size[k] - 1 : size[k] / 2], good = *r;
+        /* one number of one element, the first, a middle or the last one */
+        for (int bad = 0; bad < 4; bad++) {
+            struct record *r = &c.element[bad == 0   ? 0
+                                          : bad == 1 ? size[k] - 1
+                                                     : size[k] / 2],
+                          good = *r;
             if (bad % 2) r->x[bad % 3] = bad == 1 ? (preal)NAN : (preal)INFINITY;
             else r->v[bad % 3] = bad == 0 ? (real)NAN : (real)-INFINITY;
             tree_upload(&lists, &c);
@@ -195,11 +206,13 @@ static void room_to_move(void **state)
     buffer_read(lists.dev, &p->reach, 0, sizeof reach, reach);
     for (int e = 0; e < N; e++) {
         const real *v = c.element[e].v;
-        preal room = (preal)r_fma((real)2e-3, r_sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]), (real)3e-3);
+        preal room =
+            (preal)r_fma((real)2e-3, r_sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]), (real)3e-3);
         preal wanted = c.element[e].radius + room + (preal)0.5 * (preal)(real)1e-3;
         fixture_same("reach", e, reach[e], wanted);
         fixture_same("room", e, reference[e][3], room);
-        for (int a = 0; a < 3; a++) fixture_same("reference", e, reference[e][a], c.element[e].x[a]);
+        for (int a = 0; a < 3; a++)
+            fixture_same("reference", e, reference[e][a], c.element[e].x[a]);
     }
     launch_free(k);
     crowd_free(&c);
@@ -207,8 +220,9 @@ static void room_to_move(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(records_follow_an_index), cmocka_unit_test(selected_and_numbered),
-        cmocka_unit_test(owners_by_the_tree), cmocka_unit_test(bounds_of_all), cmocka_unit_test(room_to_move)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(records_follow_an_index),
+        cmocka_unit_test(selected_and_numbered), cmocka_unit_test(owners_by_the_tree),
+        cmocka_unit_test(bounds_of_all), cmocka_unit_test(room_to_move)};
     lists_open(&lists);
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     lists_close(&lists);

@@ -1,18 +1,27 @@
-/* wall_force against contact_law on the host, bit for bit, over several steps: every kind of primitive that the flags have, at rest or in motion,
- * touching,
- * parting, bonded, far away. Compiled once for each set of features and each precision, see meson.build. */
+/* wall_force against contact_law on the host, bit for bit, over several steps: every kind of
+ * primitive that the flags have, at rest or in motion, touching, parting, bonded, far away.
+ * Compiled once for each set of features and each precision, see meson.build. */
 #include "contact_scene.h"
 #include "comm/fail.h"
 #include "kernels/contact/law_wall.h"
 #include "record_reader.h"
 
-/* The geometry of walls in motion is written for tables in device memory; everything it includes has been included, for the host. */
+/* The geometry of walls in motion is written for tables in device memory; everything it includes
+ * has been included, for the host. */
 #define __OPENCL_VERSION__ 120
 #define __global
 #include "kernels/particle/wall_geometry.h"
 #undef __OPENCL_VERSION__
 
-enum { N_ELEMENT = 600, N_CANDIDATE = 900, CAPACITY = 912, N_WALL = 6, N_PRIMITIVE = 40, N_STEP = 5, RESULT_ROOM = 16 };
+enum {
+    N_ELEMENT = 600,
+    N_CANDIDATE = 900,
+    CAPACITY = 912,
+    N_WALL = 6,
+    N_PRIMITIVE = 40,
+    N_STEP = 5,
+    RESULT_ROOM = 16
+};
 static const double radius = 2e-3;
 static uint64_t seed = 4;
 
@@ -21,7 +30,8 @@ struct test {
     struct contact_scene contacts;
     struct record element[N_ELEMENT];
     preal primitive[N_PRIMITIVE][WALL_PRIMITIVE_WIDTH], pose[N_WALL][POSE_WIDTH];
-    int wall_of[N_PRIMITIVE], wall_material[N_WALL], candidate[N_CANDIDATE], of_element[N_CANDIDATE], keep[N_CANDIDATE], state[CAPACITY];
+    int wall_of[N_PRIMITIVE], wall_material[N_WALL], candidate[N_CANDIDATE],
+        of_element[N_CANDIDATE], keep[N_CANDIDATE], state[CAPACITY];
     real history[(HISTORY_WIDTH + 1) * CAPACITY];
     double ledger[LEDGER_WIDTH * CAPACITY]; /* of the host */
     double row[N_MATERIAL * N_MATERIAL][TABLE_WIDTH];
@@ -90,9 +100,11 @@ static void set_element(struct test *t, int e)
 {
     struct record *r = &t->element[e];
     int k = (int)scratch_random(&seed, 0, N_PRIMITIVE), material = WITH_MATERIALS && any() < 0;
-    double own = WITH_SIZES ? radius * (2 + any()) / 2 : radius, gap = e % 10 == 9 ? 0.3 * radius * any() : 2e-5 * any();
+    double own = WITH_SIZES ? radius * (2 + any()) / 2 : radius,
+           gap = e % 10 == 9 ? 0.3 * radius * any() : 2e-5 * any();
     struct wall_frame frame = pose_frame(t->pose[t->wall_of[k]]);
-    pvec3 q = p3((preal)(t->primitive[k][0] + (preal)(0.02 * any())), (preal)(t->primitive[k][1] + (preal)(0.02 * any())),
+    pvec3 q = p3((preal)(t->primitive[k][0] + (preal)(0.02 * any())),
+        (preal)(t->primitive[k][1] + (preal)(0.02 * any())),
         (preal)(t->primitive[k][2] + (preal)(0.02 * any())));
     struct wall_closest c = wall_closest(primitive_of(t, k), q);
     pvec3 x = wall_to_world(frame, p3_fma(c.distance - (preal)(own + gap), c.n, q));
@@ -140,7 +152,8 @@ static void set_state(struct test *t)
     for (int k = 0; k < N_CANDIDATE; k++) set_candidate(t, k);
     for (int a = 0; a < N_MATERIAL; a++)
         for (int b = 0; b < N_MATERIAL; b++)
-            contact_scene_row(&t->contacts, a, b, true, radius, 1 / (double)t->element[0].inverse_m, t->row[N_MATERIAL * a + b]);
+            contact_scene_row(&t->contacts, a, b, true, radius, 1 / (double)t->element[0].inverse_m,
+                t->row[N_MATERIAL * a + b]);
 }
 
 static void set_arguments(struct test *t)
@@ -154,13 +167,17 @@ static void set_arguments(struct test *t)
         const char *name;
         size_t bytes;
         const void *data;
-    } array[] = {{"position", sizeof t->element, NULL}, {"candidate", sizeof t->candidate, t->candidate},
-        {"candidate_element", sizeof t->of_element, t->of_element}, {"primitive", sizeof t->primitive, t->primitive},
-        {"wall_of", sizeof t->wall_of, t->wall_of}, {"pose", sizeof t->pose, NULL}, {"keep", sizeof t->keep, t->keep},
-        {"state", sizeof t->state, t->state}, {"history", sizeof t->history, t->history}, {"ledger", sizeof t->ledger, t->ledger},
-        {"wall_material", sizeof t->wall_material, t->wall_material}, {"table", sizeof table, table},
-        {"result", RESULT_ROOM * CAPACITY * sizeof(real), NULL}};
-    for (int b = 0; b < 13; b++) fixture_bind(dev, k, &t->buffer[b], array[b].name, array[b].bytes, array[b].data);
+    } array[] = {{"position", sizeof t->element, NULL},
+        {"candidate", sizeof t->candidate, t->candidate},
+        {"candidate_element", sizeof t->of_element, t->of_element},
+        {"primitive", sizeof t->primitive, t->primitive},
+        {"wall_of", sizeof t->wall_of, t->wall_of}, {"pose", sizeof t->pose, NULL},
+        {"keep", sizeof t->keep, t->keep}, {"state", sizeof t->state, t->state},
+        {"history", sizeof t->history, t->history}, {"ledger", sizeof t->ledger, t->ledger},
+        {"wall_material", sizeof t->wall_material, t->wall_material},
+        {"table", sizeof table, table}, {"result", RESULT_ROOM * CAPACITY * sizeof(real), NULL}};
+    for (int b = 0; b < 13; b++)
+        fixture_bind(dev, k, &t->buffer[b], array[b].name, array[b].bytes, array[b].data);
     launch_bind_buffer(k, "motion", &t->buffer[0]);
     launch_set_int(k, "n_candidate", N_CANDIDATE);
     launch_set_int(k, "capacity", CAPACITY);
@@ -191,36 +208,46 @@ static struct host_contact law_of(const struct test *t, int c)
 #endif
     if (WITH_TABLE) row += t->wall_material[wall];
     struct contact_parameters q;
-    if (WITH_SIZES) q = contact_parameters_of(contact_scene_material(t->row[row]), contact_pair_wall(e->inverse_m, own), (real)STEP);
+    if (WITH_SIZES)
+        q = contact_parameters_of(
+            contact_scene_material(t->row[row]), contact_pair_wall(e->inverse_m, own), (real)STEP);
     else q = contact_scene_parameters(t->row[row]);
-    struct wall_geometry g = WITH_MOVING ? wall_geometry_moving(w, x, v, t->pose[wall], (real)STEP) : wall_geometry(w, x, v, (real)STEP);
+    struct wall_geometry g = WITH_MOVING ? wall_geometry_moving(w, x, v, t->pose[wall], (real)STEP)
+                                         : wall_geometry(w, x, v, (real)STEP);
     host.h = contact_scene_history(t->state, t->history, CAPACITY, (size_t)c);
     if (WITH_TRIANGLE && !t->keep[c]) {
         g.distance = 2 * (preal)own; /* out of reach */
         host.h.state = 0;
     }
     host.v_wall = g.v;
-    host.k = contact_kinematics_wall(g.n, g.n_half, own - (real)g.distance, own - (real)g.distance_half, v, g.v, spin, own);
+    host.k = contact_kinematics_wall(
+        g.n, g.n_half, own - (real)g.distance, own - (real)g.distance_half, v, g.v, spin, own);
     host.r = contact_law(host.k, q, (real)STEP, &host.h);
     return host;
 }
 
 /* A wall's work: mean of the force of the step before and of now, along the way of the wall. */
-static void check_work(const struct test *t, const real *history, int c, struct host_contact host, double *ledger)
+static void check_work(
+    const struct test *t, const real *history, int c, struct host_contact host, double *ledger)
 {
     vec3 before = contact_scene_plane(t->history, CAPACITY, (size_t)c, WALL_FORCE_AT);
-    contact_scene_same("force that the wall remembers", c, contact_scene_plane(history, CAPACITY, (size_t)c, WALL_FORCE_AT), host.r.force);
-    ledger[LEDGER_WORK] += (double)((real)0.5 * (real)STEP * v3_dot(v3_add(before, host.r.force), host.v_wall));
+    contact_scene_same("force that the wall remembers", c,
+        contact_scene_plane(history, CAPACITY, (size_t)c, WALL_FORCE_AT), host.r.force);
+    ledger[LEDGER_WORK] +=
+        (double)((real)0.5 * (real)STEP * v3_dot(v3_add(before, host.r.force), host.v_wall));
 }
 
-static void check_candidate(
-    struct test *t, int c, const struct reading *reading, const int *state, const real *history, const double *ledger, struct host_contact host)
+static void check_candidate(struct test *t, int c, const struct reading *reading, const int *state,
+    const real *history, const double *ledger, struct host_contact host)
 {
     double own[LEDGER_WIDTH];
     const real *f = reading->force, *torque = reading->torque;
-    vec3 zero = v3(0, 0, 0), expected = v3_fma(host.k.l_i, host.r.couple, host.r.moment); /* zeros are added, so that -0 is 0 as in gather */
+    /* zeros are added, so that -0 is 0 as in gather */
+    vec3 zero = v3(0, 0, 0), expected = v3_fma(host.k.l_i, host.r.couple, host.r.moment);
     contact_scene_same("force", c, v3(f[0], f[1], f[2]), v3_add(zero, host.r.force));
-    if (WITH_ROTATION) contact_scene_same("torque", c, v3(torque[0], torque[1], torque[2]), v3_add(zero, expected));
+    if (WITH_ROTATION)
+        contact_scene_same(
+            "torque", c, v3(torque[0], torque[1], torque[2]), v3_add(zero, expected));
     contact_scene_check_history(state, history, CAPACITY, (size_t)c, host.h);
     if (!WITH_ENERGY) return;
     for (int k = 0; k < LEDGER_WIDTH; k++) own[k] = t->ledger[k * CAPACITY + c];
@@ -285,7 +312,8 @@ static void check_law(bool one_lane)
         check_step(t);
         move(t);
     }
-    assert_true(t->n_touching > 500 && t->n_apart > 300 && t->n_begun > 20); /* all kinds were there */
+    /* all kinds were there */
+    assert_true(t->n_touching > 500 && t->n_apart > 300 && t->n_begun > 20);
     if (WITH_HISTORY) assert_true(t->n_ended > 20);
     reader_close(&t->reader);
     launch_free(t->launch);
@@ -309,6 +337,7 @@ static void batch_by_many_lanes(void **unused)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(batch_by_one_lane), cmocka_unit_test(batch_by_many_lanes)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(batch_by_one_lane), cmocka_unit_test(batch_by_many_lanes)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
-/* Walls' candidates, kept triangles, the passing on of friction over a mesh, and histories through a list build; each against the host. Two meshes,
- * one of them in motion, a plane, a rectangle, a cylinder, a box, and a wall that is not there yet. Compiled in double and in single, see
+/* Walls' candidates, kept triangles, the passing on of friction over a mesh, and histories through
+ * a list build; each against the host. Two meshes, one of them in motion, a plane, a rectangle, a
+ * cylinder, a box, and a wall that is not there yet. Compiled in double and in single, see
  * meson.build. */
 #include "lists_fixture.h"
 
@@ -46,8 +47,8 @@ static char *sheet(void)
 
 static void make_walls(void)
 {
-    static const enum surface_kind kind[N_WALL] = {
-        SURFACE_STL, SURFACE_PLANE, SURFACE_STL, SURFACE_RECTANGLE, SURFACE_CYLINDER, SURFACE_BOX, SURFACE_RECTANGLE};
+    static const enum surface_kind kind[N_WALL] = {SURFACE_STL, SURFACE_PLANE, SURFACE_STL,
+        SURFACE_RECTANGLE, SURFACE_CYLINDER, SURFACE_BOX, SURFACE_RECTANGLE};
     struct scene_errors errors = {0};
     for (int w = 0; w < N_WALL; w++) {
         wall[w] = scratch_wall(kind[w]);
@@ -74,16 +75,19 @@ static void make_walls(void)
 
 static struct wall_frame frame_of(int w)
 {
-    const double *r = wall_contacts_pose(contacts, STEP_NOW)[w].rotation, *t = wall_contacts_pose(contacts, STEP_NOW)[w].translation;
-    struct wall_frame f = {p3((preal)r[0], (preal)r[1], (preal)r[2]), p3((preal)r[3], (preal)r[4], (preal)r[5]),
-        p3((preal)r[6], (preal)r[7], (preal)r[8]), p3((preal)t[0], (preal)t[1], (preal)t[2])};
+    const double *r = wall_contacts_pose(contacts, STEP_NOW)[w].rotation,
+                 *t = wall_contacts_pose(contacts, STEP_NOW)[w].translation;
+    struct wall_frame f = {p3((preal)r[0], (preal)r[1], (preal)r[2]),
+        p3((preal)r[3], (preal)r[4], (preal)r[5]), p3((preal)r[6], (preal)r[7], (preal)r[8]),
+        p3((preal)t[0], (preal)t[1], (preal)t[2])};
     return f;
 }
 
 static struct wall_primitive primitive_of(int k)
 {
     preal row[WALL_PRIMITIVE_WIDTH];
-    for (int c = 0; c < WALL_PRIMITIVE_WIDTH; c++) row[c] = (preal)walls->primitive[WALL_PRIMITIVE_WIDTH * k + c];
+    for (int c = 0; c < WALL_PRIMITIVE_WIDTH; c++)
+        row[c] = (preal)walls->primitive[WALL_PRIMITIVE_WIDTH * k + c];
     return WALL_PRIMITIVE(row, 0);
 }
 
@@ -102,7 +106,8 @@ static struct crowd make(void)
 {
     struct crowd c = crowd_create(N, N);
     for (int e = 0; e < N; e++) {
-        for (int a = 0; a < 3; a++) c.element[e].x[a] = (preal)(a < 2 ? uniform(-0.3, 5.3) : uniform(-0.5, 0.8));
+        for (int a = 0; a < 3; a++)
+            c.element[e].x[a] = (preal)(a < 2 ? uniform(-0.3, 5.3) : uniform(-0.5, 0.8));
         c.element[e].radius = (preal)radius;
         c.reach[e] = (preal)uniform(radius, 1.3 * radius);
         c.gid[e] = 7919 * (int64_t)(e + 1) % 10007;
@@ -117,7 +122,8 @@ static void build(const struct crowd *c)
     p->n_owned = c->n_owned;
     p->n_ghost = 0;
     particles_reserve(lists.dev, p, &lists.features, c->n_all, 0);
-    buffer_write(lists.dev, &p->field[FIELD_STATE].now, 0, (size_t)c->n_all * sizeof *c->element, c->element);
+    buffer_write(lists.dev, &p->field[FIELD_STATE].now, 0, (size_t)c->n_all * sizeof *c->element,
+        c->element);
     buffer_write(lists.dev, &p->reach, 0, (size_t)c->n_all * sizeof *c->reach, c->reach);
     wall_contacts_set_step(lists.dev, contacts, STEP_NOW);
     wall_contacts_build(lists.dev, contacts, lists.scan, p, STEP_NOW, 2, low, high);
@@ -133,8 +139,9 @@ static struct found read_found(void)
 {
     struct wall_list *l = &contacts->now;
     size_t bytes = (size_t)(l->capacity * contacts->layout.history) * sizeof(real);
-    struct found f = {lists_ints(&lists, &l->begin, N + 1), lists_ints(&lists, &l->candidate, l->n), lists_ints(&lists, &l->element, l->n),
-        lists_ints(&lists, &contacts->keep, l->n), lists_ints(&lists, &l->state, l->capacity), fail_alloc(bytes)};
+    struct found f = {lists_ints(&lists, &l->begin, N + 1), lists_ints(&lists, &l->candidate, l->n),
+        lists_ints(&lists, &l->element, l->n), lists_ints(&lists, &contacts->keep, l->n),
+        lists_ints(&lists, &l->state, l->capacity), fail_alloc(bytes)};
     buffer_read(lists.dev, &l->history, 0, bytes, f.history);
     return f;
 }
@@ -158,7 +165,9 @@ static void candidates_within_reach(void **unused)
             int w = walls->wall_of[k];
             double room = contacts->room_host[w];
             assert_true((room < 0) == (w == 6) && (room > 0) == (w == 2));
-            if (room < 0 || !(wall_closest(primitive_of(k), wall_to_reference(frame_of(w), centre(&c, e))).distance < c.reach[e] + (preal)room))
+            if (room < 0 ||
+                !(wall_closest(primitive_of(k), wall_to_reference(frame_of(w), centre(&c, e)))
+                        .distance < c.reach[e] + (preal)room))
                 continue;
             assert_true(at < contacts->now.n && f.candidate[at] == k && f.element[at] == e);
             at++;
@@ -182,9 +191,11 @@ static void one_contact_per_minimum(void **unused)
     struct wall_closest *closest = fail_alloc((size_t)walls->n_primitive * sizeof *closest);
     int *kept = fail_alloc((size_t)walls->n_primitive * sizeof *kept);
     for (int e = 0; e < N; e++) {
-        double x[3] = {(double)c.element[e].x[0], (double)c.element[e].x[1], (double)c.element[e].x[2]};
-        int n = reference_contacts(walls, wall_contacts_pose(contacts, STEP_NOW), x, (double)c.element[e].radius, f.candidate + f.begin[e],
-            f.begin[e + 1] - f.begin[e], kept, closest);
+        double x[3] = {
+            (double)c.element[e].x[0], (double)c.element[e].x[1], (double)c.element[e].x[2]};
+        int n = reference_contacts(walls, wall_contacts_pose(contacts, STEP_NOW), x,
+            (double)c.element[e].radius, f.candidate + f.begin[e], f.begin[e + 1] - f.begin[e],
+            kept, closest);
         for (int k = f.begin[e], m = 0; k < f.begin[e + 1]; k++) {
             bool wanted = m < n && kept[m] == f.candidate[k];
             m += wanted;
@@ -213,27 +224,35 @@ static void write_histories(const struct crowd *c, struct found *f)
     for (int64_t k = 0; k < l->n; k++) {
         f->state[k] = uniform(0, 1) < 0.5 ? CONTACT_TOUCHING : 0;
         for (int p = 0; p < contacts->layout.history; p++)
-            f->history[p * l->capacity + k] = f->state[k] ? history_of(c->gid[f->element[k]], f->candidate[k], p) : 0;
+            f->history[p * l->capacity + k] =
+                f->state[k] ? history_of(c->gid[f->element[k]], f->candidate[k], p) : 0;
     }
     buffer_write(lists.dev, &l->state, 0, (size_t)l->capacity * sizeof *f->state, f->state);
-    buffer_write(lists.dev, &l->history, 0, (size_t)(l->capacity * contacts->layout.history) * sizeof *f->history, f->history);
+    buffer_write(lists.dev, &l->history, 0,
+        (size_t)(l->capacity * contacts->layout.history) * sizeof *f->history, f->history);
 }
 
-/* Who gives its history to t, as law_wall.h says; state: as it is when t's turn comes. -1: nobody. */
+/* Who gives its history to t, as law_wall.h says; state: as it is when t's turn comes. -1:
+ * nobody. */
 static int giver_of(const struct crowd *c, const struct found *f, int e, int t, const int *state)
 {
     struct wall_closest own = closest_of(c, e, f->candidate[t]);
     struct wall_features features = WALL_FEATURES(walls->features, f->candidate[t]);
     int giver = -1;
     preal best = 0;
-    if (walls->features[6 * f->candidate[t]] < 0 || state[t] != 0 || !f->keep[t] || !(own.distance < c->element[e].radius)) return -1;
+    if (walls->features[6 * f->candidate[t]] < 0 || state[t] != 0 || !f->keep[t] ||
+        !(own.distance < c->element[e].radius))
+        return -1;
     for (int s = f->begin[e]; s < f->begin[e + 1]; s++) {
-        if (state[s] == 0 || walls->wall_of[f->candidate[s]] != walls->wall_of[f->candidate[t]]) continue;
+        if (state[s] == 0 || walls->wall_of[f->candidate[s]] != walls->wall_of[f->candidate[t]])
+            continue;
         struct wall_closest other = closest_of(c, e, f->candidate[s]);
         int ended = !f->keep[s] || !(other.distance < c->element[e].radius);
         int near = wall_is_neighbour(WALL_FEATURES(walls->features, f->candidate[s]), features);
         preal cosine = p3_dot(other.n, own.n);
-        if (!wall_hands_over(ended, 1, near, v3_of_p3(other.n), v3_of_p3(own.n)) || !(cosine > best)) continue;
+        if (!wall_hands_over(ended, 1, near, v3_of_p3(other.n), v3_of_p3(own.n)) ||
+            !(cosine > best))
+            continue;
         best = cosine;
         giver = s;
     }
@@ -250,7 +269,8 @@ static void friction_goes_over_the_mesh(void **unused)
     write_histories(&c, &before);
     wall_contacts_select(lists.dev, contacts, lists.particles);
     struct found f = read_found();
-    int *state = fail_alloc((size_t)contacts->now.capacity * sizeof *state), *from = fail_alloc((size_t)contacts->now.capacity * sizeof *from);
+    int *state = fail_alloc((size_t)contacts->now.capacity * sizeof *state),
+        *from = fail_alloc((size_t)contacts->now.capacity * sizeof *from);
     memcpy(state, before.state, (size_t)contacts->now.capacity * sizeof *state);
     for (int k = 0; k < contacts->now.n; k++) from[k] = state[k] ? k : -1;
     for (int e = 0; e < N; e++)
@@ -267,7 +287,8 @@ static void friction_goes_over_the_mesh(void **unused)
         assert_int_equal(f.state[k], state[k]);
         n_stayed += from[k] == k;
         for (int p = 0; p < contacts->layout.history; p++) {
-            real wanted = from[k] < 0 ? 0 : history_of(c.gid[f.element[k]], f.candidate[from[k]], p);
+            real wanted =
+                from[k] < 0 ? 0 : history_of(c.gid[f.element[k]], f.candidate[from[k]], p);
             fixture_same("history", k, f.history[p * contacts->now.capacity + k], wanted);
         }
     }
@@ -279,7 +300,8 @@ static void friction_goes_over_the_mesh(void **unused)
     crowd_free(&c);
 }
 
-/* Elements in another order, moved a little, a hundred of them as if they came from another rank with their contacts. */
+/* Elements in another order, moved a little, a hundred of them as if they came from another rank
+ * with their contacts. */
 static void histories_follow_their_contacts(void **unused)
 {
     (void)unused;
@@ -302,15 +324,19 @@ static void histories_follow_their_contacts(void **unused)
     for (int k = 0; k < LEAVE; k++) leave[k] = k;
     fixture_buffer(lists.dev, &index, "index", sizeof leave, leave);
     fixture_buffer(lists.dev, &old_index, "old index", sizeof old, old);
-    owners_pick_contacts(lists.dev, &leaving, lists.scan, &index, LEAVE, NULL, contacts, sizeof(real));
-    owners_store_contacts(lists.dev, &contacts->arrivals, &leaving, LEAVE, sizeof(cl_int), contacts->layout.history, sizeof(real));
+    owners_pick_contacts(
+        lists.dev, &leaving, lists.scan, &index, LEAVE, NULL, contacts, sizeof(real));
+    owners_store_contacts(lists.dev, &contacts->arrivals, &leaving, LEAVE, sizeof(cl_int),
+        contacts->layout.history, sizeof(real));
     build(&moved);
     wall_contacts_carry(lists.dev, contacts, &old_index);
     struct found f = read_found();
     for (int e = 0; e < N; e++)
         for (int k = f.begin[e], q = before.begin[from[e]]; k < f.begin[e + 1]; k++) {
             while (q < before.begin[from[e] + 1] && before.candidate[q] < f.candidate[k]) q++;
-            int state = q < before.begin[from[e] + 1] && before.candidate[q] == f.candidate[k] ? before.state[q] : 0;
+            int state = q < before.begin[from[e] + 1] && before.candidate[q] == f.candidate[k]
+                            ? before.state[q]
+                            : 0;
             assert_int_equal(f.state[k], state);
             n_kept += state != 0;
             for (int p = 0; p < contacts->layout.history; p++) {
@@ -332,13 +358,15 @@ static void histories_follow_their_contacts(void **unused)
 int main(int argc, char **argv)
 {
     static const char *const sources[] = {"wall_keep.cl", "layout.cl", NULL};
-    const struct CMUnitTest tests[] = {cmocka_unit_test(candidates_within_reach), cmocka_unit_test(one_contact_per_minimum),
-        cmocka_unit_test(friction_goes_over_the_mesh), cmocka_unit_test(histories_follow_their_contacts)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(candidates_within_reach),
+        cmocka_unit_test(one_contact_per_minimum), cmocka_unit_test(friction_goes_over_the_mesh),
+        cmocka_unit_test(histories_follow_their_contacts)};
     comm = comm_create(&argc, &argv);
     make_walls();
     lists_open(&lists);
     force = fixture_program(lists.dev, &lists.features, FEATURES_WALL, sources);
-    contacts = wall_contacts_create(lists.dev, comm, &lists.features, &scene, walls, dt, lists.program, force);
+    contacts = wall_contacts_create(
+        lists.dev, comm, &lists.features, &scene, walls, dt, lists.program, force);
     assert_int_equal(contacts->layout.history, HISTORY_WIDTH);
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     wall_contacts_free(lists.dev, contacts);

@@ -37,7 +37,8 @@ void tree_grow(struct tree *t, int n_leaf)
 {
     int leaf = 1;
     memset(t, 0, sizeof *t);
-    t->rcb = (struct rcb){.n_node = n_leaf - 1, .axis = t->axis, .cut = t->cut, .left = t->left, .right = t->right};
+    t->rcb = (struct rcb){
+        .n_node = n_leaf - 1, .axis = t->axis, .cut = t->cut, .left = t->left, .right = t->right};
     for (int k = 0; k < n_leaf - 1; k++) {
         t->axis[k] = (int)tree_random(0, 3);
         t->cut[k] = (double)(preal)tree_random(0.2, 0.8);
@@ -45,7 +46,8 @@ void tree_grow(struct tree *t, int n_leaf)
         t->right[k] = -1;
         if (k == 0) t->right[0] = -1 - leaf++;
         while (k > 0) { /* splits one of the leaves there are */
-            int parent = (int)tree_random(0, k), *child = tree_random(0, 1) < 0.5 ? &t->left[parent] : &t->right[parent];
+            int parent = (int)tree_random(0, k),
+                *child = tree_random(0, 1) < 0.5 ? &t->left[parent] : &t->right[parent];
             if (*child >= 0) continue;
             t->left[k] = *child;
             t->right[k] = -1 - leaf++;
@@ -58,7 +60,8 @@ void tree_grow(struct tree *t, int n_leaf)
 void tree_bind(struct lists *lists, struct launch *k, const struct tree *t, struct buffer buffer[3])
 {
     int node[3 * TREE_LEAVES] = {0};
-    preal cut[TREE_LEAVES] = {0}, domain[6] = {0, 0, 0, (preal)LISTS_PERIOD, (preal)LISTS_PERIOD, (preal)LISTS_PERIOD};
+    preal cut[TREE_LEAVES] = {0},
+          domain[6] = {0, 0, 0, (preal)LISTS_PERIOD, (preal)LISTS_PERIOD, (preal)LISTS_PERIOD};
     for (int n = 0; n < t->rcb.n_node; n++) {
         node[3 * n] = t->axis[n];
         node[3 * n + 1] = t->left[n];

@@ -22,6 +22,7 @@ struct crowd tree_crowd(int n, double beyond);
 void tree_upload(struct lists *lists, const struct crowd *c);
 void tree_grow(struct tree *t, int n_leaf);
 /* Arguments node, cut, domain (buffers that the caller frees) and n_node. */
-void tree_bind(struct lists *lists, struct launch *k, const struct tree *t, struct buffer buffer[3]);
+void tree_bind(
+    struct lists *lists, struct launch *k, const struct tree *t, struct buffer buffer[3]);
 
 #endif

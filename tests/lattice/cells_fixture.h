@@ -10,12 +10,14 @@
 #include "lattice/lattice_loads.h"
 #include "kernels/lattice/law_volume.h"
 
-#define LATTICE(bodies)                                                                                                                              \
-    "method: lattice\n"                                                                                                                              \
-    "time: {end: 1}\n"                                                                                                                               \
-    "materials: {a: {density: 1, young: 1, poisson: 0}, b: {density: 2, young: 3, poisson: 0.2}}\n"                                                  \
+#define LATTICE(bodies)                                                                            \
+    "method: lattice\n"                                                                            \
+    "time: {end: 1}\n"                                                                             \
+    "materials: {a: {density: 1, young: 1, poisson: 0}, "                                          \
+    "b: {density: 2, young: 3, poisson: 0.2}}\n"                                                   \
     "bodies:\n" bodies
-#define BODY(name, material, cell, shape) " - {name: " name ", material: " material ", cell: " cell ", shape: {" shape "}}\n"
+#define BODY(name, material, cell, shape)                                                          \
+    " - {name: " name ", material: " material ", cell: " cell ", shape: {" shape "}}\n"
 #define BOX(x, y, z, X, Y, Z) "box: {min: [" #x ", " #y ", " #z "], max: [" #X ", " #Y ", " #Z "]}"
 #define CUBE(n) BODY("cube", "a", "1", BOX(0, 0, 0, n, n, n))
 
@@ -44,7 +46,8 @@ static inline void cut_free(struct cut cut)
 }
 
 /* The scene reads well, and its cells give exactly these messages. */
-static inline void cut_expect(struct fixture *f, const char *text, const char *const *message, int n)
+static inline void cut_expect(
+    struct fixture *f, const char *text, const char *const *message, int n)
 {
     struct scene_errors errors = {0};
     fixture_scene(f, text);
@@ -79,30 +82,38 @@ static inline int64_t cut_links(const struct lattice_cells *cells)
 static inline int64_t cut_find(const struct lattice_cells *cells, int grid, int x, int y, int z)
 {
     for (int64_t i = 0; i < cells->n; i++)
-        if (cells->kind[cells->kind_of[i]].grid == grid && cells->at[i][0] == x && cells->at[i][1] == y && cells->at[i][2] == z) return i;
+        if (cells->kind[cells->kind_of[i]].grid == grid && cells->at[i][0] == x &&
+            cells->at[i][1] == y && cells->at[i][2] == z)
+            return i;
     return -1;
 }
 
-/* Every cell: links where there is a neighbour on its grid and nowhere else, neighbours as found, order by grid, z, y, x. */
+/* Every cell: links where there is a neighbour on its grid and nowhere else, neighbours as found,
+ * order by grid, z, y, x. */
 static inline void cut_verify(const struct lattice_cells *cells)
 {
     int32_t *upper = fail_alloc((size_t)cells->n * sizeof *upper);
     for (int a = 0; a < 3; a++) {
         lattice_cells_upper(cells, a, upper);
         for (int64_t i = 0; i < cells->n; i++) {
-            int grid = cells->kind[cells->kind_of[i]].grid, next[3] = {cells->at[i][0], cells->at[i][1], cells->at[i][2]};
+            int grid = cells->kind[cells->kind_of[i]].grid,
+                next[3] = {cells->at[i][0], cells->at[i][1], cells->at[i][2]};
             next[a]++;
             int64_t beyond = cut_find(cells, grid, next[0], next[1], next[2]);
             assert_int_equal(upper[i], beyond);
             assert_int_equal((cells->bits[i] & LINK_BIT(a, 1)) != 0, beyond >= 0);
             next[a] -= 2;
-            assert_int_equal((cells->bits[i] & LINK_BIT(a, 0)) != 0, cut_find(cells, grid, next[0], next[1], next[2]) >= 0);
+            assert_int_equal((cells->bits[i] & LINK_BIT(a, 0)) != 0,
+                cut_find(cells, grid, next[0], next[1], next[2]) >= 0);
         }
     }
     for (int64_t i = 1; i < cells->n; i++) {
         const int32_t *p = cells->at[i - 1], *q = cells->at[i];
         int g = cells->kind[cells->kind_of[i - 1]].grid, h = cells->kind[cells->kind_of[i]].grid;
-        bool above = h > g || (h == g && (q[2] > p[2] || (q[2] == p[2] && (q[1] > p[1] || (q[1] == p[1] && q[0] > p[0])))));
+        bool above =
+            h > g ||
+            (h == g &&
+                (q[2] > p[2] || (q[2] == p[2] && (q[1] > p[1] || (q[1] == p[1] && q[0] > p[0])))));
         assert_true(above);
     }
     free(upper);

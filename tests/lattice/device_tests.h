@@ -14,9 +14,10 @@ static int device_tests_end(int failed)
     return failed;
 }
 
-/* Exit code of all `tests`, an array (cmocka counts it); 77, skipped, where the device has no doubles. */
-#define DEVICE_TESTS(tests)                                                                                                                          \
-    (comm = comm_create(NULL, NULL), dev = device_open(comm, NULL, true, false),                                                                     \
+/* Exit code of all `tests`, an array (cmocka counts it); 77, skipped, where the device has no
+ * doubles. */
+#define DEVICE_TESTS(tests)                                                                        \
+    (comm = comm_create(NULL, NULL), dev = device_open(comm, NULL, true, false),                   \
         device_tests_end(dev->fp64 ? cmocka_run_group_tests(tests, NULL, NULL) : 77))
 
 #endif

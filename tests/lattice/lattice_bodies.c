@@ -27,16 +27,19 @@ bool bodies_voxels(int grid, const int at[3], struct bodies_cell *cell)
 bool bodies_mixed(int grid, const int at[3], struct bodies_cell *cell)
 {
     uint64_t h = hash(grid, at);
-    cell->kind = at[1] >= 4 || h >> 40 & 15 ? at[1] < 4 : 1; /* a layer of the first, grains of the second in it */
+    /* a layer of the first, grains of the second in it */
+    cell->kind = at[1] >= 4 || h >> 40 & 15 ? at[1] < 4 : 1;
     cell->fixed = at[0] == 0 ? 63 : h >> 20 & 31 ? 0 : (int)(h >> 30 & 63);
     cell->row = h >> 50 & 3 ? 0 : 1 + (int)(h >> 52 & 3);
     return h % 3 != 0;
 }
 
-struct lattice_cells *bodies_create(int n_grid, const int size[3], double h, int n_material, bodies_solid *solid)
+struct lattice_cells *bodies_create(
+    int n_grid, const int size[3], double h, int n_material, bodies_solid *solid)
 {
     struct lattice_cells *c = fail_alloc(sizeof *c);
-    int64_t most = (int64_t)n_grid * size[0] * size[1] * size[2], *seen = fail_alloc((size_t)most * sizeof *seen);
+    int64_t most = (int64_t)n_grid * size[0] * size[1] * size[2],
+            *seen = fail_alloc((size_t)most * sizeof *seen);
     c->n_grid = n_grid;
     c->n_kind = n_grid * n_material;
     c->grid = fail_alloc((size_t)n_grid * sizeof *c->grid);
@@ -48,8 +51,10 @@ struct lattice_cells *bodies_create(int n_grid, const int size[3], double h, int
     c->row = fail_alloc((size_t)most * sizeof *c->row);
     for (int g = 0; g < n_grid; g++) {
         c->grid[g] = (struct lattice_grid){g % 2 ? h / 2 : h, {20 * h * g, 0, 0}};
-        for (int m = 0; m < n_material; m++) c->kind[g * n_material + m] = (struct lattice_kind){m, g};
-        const int less = g % 2, n[3] = {size[0] - less, size[1] - less, size[2] - less}, step[3] = {1, n[0], n[0] * n[1]};
+        for (int m = 0; m < n_material; m++)
+            c->kind[g * n_material + m] = (struct lattice_kind){m, g};
+        const int less = g % 2, n[3] = {size[0] - less, size[1] - less, size[2] - less},
+                  step[3] = {1, n[0], n[0] * n[1]};
         for (int k = 0; k < n[0] * n[1] * n[2]; k++) {
             const int at[3] = {k % n[0], k / n[0] % n[1], k / (n[0] * n[1])};
             struct bodies_cell cell = {0, 0, 0};
@@ -94,7 +99,9 @@ void bodies_shake(struct lattice_cells *c, double v, double w)
     c->w = fail_alloc((size_t)c->n * sizeof *c->w);
     for (int64_t i = 0; i < c->n; i++)
         for (int a = 0; a < 6; a++) {
-            double r = (double)(mpi_check_random((uint64_t)(6 * i + a + 77)) >> 11) / 4503599627370496.0 - 1;
+            double r =
+                (double)(mpi_check_random((uint64_t)(6 * i + a + 77)) >> 11) / 4503599627370496.0 -
+                1;
             if (c->bits[i] & CELL_FIX(a)) r = 0;
             if (a < 3) c->v[i][a] = v * r;
             else c->w[i][a - 3] = w * r;
@@ -104,8 +111,8 @@ void bodies_shake(struct lattice_cells *c, double v, double w)
 struct lattice_motion bodies_motion(int64_t n)
 {
     size_t s = (size_t)n;
-    struct lattice_motion m = {fail_alloc(s * sizeof *m.u), fail_alloc(s * sizeof *m.theta), fail_alloc(s * sizeof *m.q), fail_alloc(s * sizeof *m.v),
-        fail_alloc(s * sizeof *m.w)};
+    struct lattice_motion m = {fail_alloc(s * sizeof *m.u), fail_alloc(s * sizeof *m.theta),
+        fail_alloc(s * sizeof *m.q), fail_alloc(s * sizeof *m.v), fail_alloc(s * sizeof *m.w)};
     for (int64_t i = 0; i < n; i++) m.q[i][0] = 1;
     return m;
 }

@@ -6,7 +6,9 @@
 #include "comm/fail.h"
 #include "lattice/lattice_places.h"
 
-_Static_assert((int)CRITERION_SUM == BREAK_SUM && (int)CRITERION_LARGEST == BREAK_LARGEST && (int)CRITERION_STRESS == BREAK_STRESS, "scene and law");
+_Static_assert((int)CRITERION_SUM == BREAK_SUM && (int)CRITERION_LARGEST == BREAK_LARGEST &&
+                   (int)CRITERION_STRESS == BREAK_STRESS,
+    "scene and law");
 
 static real *reals(double *value, int64_t n)
 {
@@ -40,8 +42,11 @@ struct host *host_create(const struct lattice_cells *cells, const struct lattice
     h->last_b = fail_alloc(n * sizeof *h->last_b);
     h->link = reals(lattice_features_links(cells, options), (int64_t)k * k * LINK_WIDTH);
     h->cell = reals(lattice_features_cells(cells, options), (int64_t)k * CELL_WIDTH);
-    if (!h->scheme->is_rk) h->kick = reals(lattice_features_kicks(cells, options), (int64_t)(h->scheme->n + 2) * k * KICK_WIDTH);
-    if (options->strength) h->limit = reals(lattice_features_limits(cells, options), (int64_t)k * k * BREAK_WIDTH);
+    if (!h->scheme->is_rk)
+        h->kick = reals(
+            lattice_features_kicks(cells, options), (int64_t)(h->scheme->n + 2) * k * KICK_WIDTH);
+    if (options->strength)
+        h->limit = reals(lattice_features_limits(cells, options), (int64_t)k * k * BREAK_WIDTH);
     if (WITH_LOADS) {
         h->rows = fail_alloc((size_t)options->n_row * LOAD_WIDTH * sizeof *h->rows);
         h->rows_double = fail_alloc((size_t)options->n_row * LOAD_WIDTH * sizeof *h->rows_double);
@@ -49,9 +54,13 @@ struct host *host_create(const struct lattice_cells *cells, const struct lattice
     for (int64_t i = 0; i < h->n; i++) {
         h->now[i].q = quat_of(1, 0, 0, 0);
         h->links[i] = cells->bits[i] & CELL_LINKS;
-        if (cells->v) h->now[i].v = v3((real)cells->v[i][0], (real)cells->v[i][1], (real)cells->v[i][2]);
-        if (cells->w) h->now[i].w = v3((real)cells->w[i][0], (real)cells->w[i][1], (real)cells->w[i][2]);
-        for (int f = 0; f < 6; f++) h->neighbour[i][f] = cells->bits[i] & CELL_LINK(f) ? lattice_places_neighbour(places, cells, i, f) : -1;
+        if (cells->v)
+            h->now[i].v = v3((real)cells->v[i][0], (real)cells->v[i][1], (real)cells->v[i][2]);
+        if (cells->w)
+            h->now[i].w = v3((real)cells->w[i][0], (real)cells->w[i][1], (real)cells->w[i][2]);
+        for (int f = 0; f < 6; f++)
+            h->neighbour[i][f] =
+                cells->bits[i] & CELL_LINK(f) ? lattice_places_neighbour(places, cells, i, f) : -1;
     }
     lattice_places_free(places);
     return h;
@@ -59,8 +68,9 @@ struct host *host_create(const struct lattice_cells *cells, const struct lattice
 
 void host_free(struct host *h)
 {
-    void *all[] = {h->neighbour, h->now, h->next, h->start, h->sums, h->p, h->p_still, h->links, h->fate, h->ledger, h->last_a, h->last_b, h->limit,
-        h->link, h->cell, h->kick, h->rows, h->rows_double};
+    void *all[] = {h->neighbour, h->now, h->next, h->start, h->sums, h->p, h->p_still, h->links,
+        h->fate, h->ledger, h->last_a, h->last_b, h->limit, h->link, h->cell, h->kick, h->rows,
+        h->rows_double};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) free(all[k]);
     free(h);
 }
@@ -68,7 +78,9 @@ void host_free(struct host *h)
 static struct link_constants constants(const struct host *h, int64_t lower, int64_t higher)
 {
     struct link_constants k;
-    const real *row = h->link + (h->cells->kind_of[lower] * h->cells->n_kind + h->cells->kind_of[higher]) * LINK_WIDTH;
+    const real *row =
+        h->link +
+        (h->cells->kind_of[lower] * h->cells->n_kind + h->cells->kind_of[higher]) * LINK_WIDTH;
     LATTICE_CONSTANTS(k, row);
     return k;
 }
@@ -104,11 +116,14 @@ static void pressures_in(const struct host *h, bool still, real *p)
         for (int f = 0; f < 6; f++) {
             int64_t j = h->neighbour[i][f];
             struct link_cell other = j < 0 ? me : still ? at_rest(h->now[j]) : h->now[j];
-            if (j >= 0) sum += lattice_stretch(f, 1, me, other, f % 2 ? constants(h, i, j) : constants(h, j, i), cell[5]);
+            if (j >= 0)
+                sum += lattice_stretch(
+                    f, 1, me, other, f % 2 ? constants(h, i, j) : constants(h, j, i), cell[5]);
             else sum += 0;
         }
         struct volume_constants c = {cell[2], cell[3], cell[4], cell[7]};
-        p[i] = c.lambda * volume_strain(sum, WITH_LOADS ? load_of(h, i).traction : (real)0, h->links[i], c);
+        p[i] = c.lambda *
+               volume_strain(sum, WITH_LOADS ? load_of(h, i).traction : (real)0, h->links[i], c);
     }
 }
 
@@ -133,7 +148,8 @@ static struct link_share share_of(const struct host *h, int64_t i, int face, boo
     if (j < 0) return none;
     const real *p = still ? h->p_still : h->p;
     struct link_constants k = face % 2 ? constants(h, i, j) : constants(h, j, i);
-    return lattice_link(face, 1, still ? at_rest(h->now[i]) : h->now[i], still ? at_rest(h->now[j]) : h->now[j], k, p[i], p[j]);
+    return lattice_link(face, 1, still ? at_rest(h->now[i]) : h->now[i],
+        still ? at_rest(h->now[j]) : h->now[j], k, p[i], p[j]);
 }
 
 static struct link_share links_of(const struct host *h, int64_t i, bool still)
@@ -146,7 +162,8 @@ static struct link_share links_of(const struct host *h, int64_t i, bool still)
 static struct lattice_effort effort_of(const struct host *h, int64_t i, vec3 gravity)
 {
     const real *cell = h->cell + h->cells->kind_of[i] * CELL_WIDTH;
-    struct lattice_effort e = {.links = links_of(h, i, false), .still = links_of(h, i, true), .weight = gravity};
+    struct lattice_effort e = {
+        .links = links_of(h, i, false), .still = links_of(h, i, true), .weight = gravity};
     if (!WITH_LOADS) return e;
     struct lattice_load load = load_of(h, i);
     e.loads = lattice_load_add(none, h->now[i], load);
@@ -162,7 +179,8 @@ static struct pull pull_of(const struct host *h, int64_t i)
     struct link_share sum = links_of(h, i, false);
     struct pull r = {.effort = none_acts};
     const real *cell = h->cell + h->cells->kind_of[i] * CELL_WIDTH;
-    vec3 add = v3((real)h->options.gravity[0], (real)h->options.gravity[1], (real)h->options.gravity[2]);
+    vec3 add =
+        v3((real)h->options.gravity[0], (real)h->options.gravity[1], (real)h->options.gravity[2]);
     if (WITH_ENERGY) r.effort = effort_of(h, i, add);
     if (WITH_LOADS) {
         struct lattice_load load = load_of(h, i);
@@ -173,7 +191,8 @@ static struct pull pull_of(const struct host *h, int64_t i)
         r.now_v = load.now_v;
         r.now_w = load.now_w;
     }
-    r.a = WITH_LOADS || WITH_GRAVITY ? v3_fma(cell[0], sum.force, add) : v3_scale(cell[0], sum.force);
+    r.a =
+        WITH_LOADS || WITH_GRAVITY ? v3_fma(cell[0], sum.force, add) : v3_scale(cell[0], sum.force);
     r.b = v3_scale(cell[1], sum.torque);
     return r;
 }
@@ -195,8 +214,8 @@ static void split(struct host *h, int k, double drift, int count, struct link_ce
         struct lattice_kick part[2];
         LATTICE_KICK(part[0], kick);
         LATTICE_KICK(part[1], kick + KICK_PART);
-        h->ledger[i] = lattice_work_split(h->ledger[i], r.effort, c, r.a, r.b, part[0], part[1], h->cells->bits[i], (double)cell[6],
-            1 / (double)cell[0], 1 / (double)cell[1], count);
+        h->ledger[i] = lattice_work_split(h->ledger[i], r.effort, c, r.a, r.b, part[0], part[1],
+            h->cells->bits[i], (double)cell[6], 1 / (double)cell[0], 1 / (double)cell[1], count);
         for (int n = 0; n < 2; n++) {
             c.v = lattice_kick(c.v, r.a, part[n].f, part[n].g);
             c.w = lattice_kick(c.w, r.b, part[n].f, part[n].g);
@@ -214,9 +233,12 @@ static void judge(struct host *h)
             int64_t j = h->neighbour[i][2 * axis + 1];
             struct break_limits limits;
             if (j < 0) continue;
-            const real *row = h->limit + (h->cells->kind_of[i] * h->cells->n_kind + h->cells->kind_of[j]) * BREAK_WIDTH;
+            const real *row =
+                h->limit +
+                (h->cells->kind_of[i] * h->cells->n_kind + h->cells->kind_of[j]) * BREAK_WIDTH;
             LATTICE_LIMITS(limits, row);
-            h->fate[i] |= lattice_fate(axis, h->now[i], h->now[j], constants(h, i, j), h->p[i], h->p[j], limits);
+            h->fate[i] |= lattice_fate(
+                axis, h->now[i], h->now[j], constants(h, i, j), h->p[i], h->p[j], limits);
         }
 }
 
@@ -252,7 +274,8 @@ static void split_step(struct host *h)
         load_rows(h, t, t, t + op->drift * dt);
         pressures(h);
         if (k == 0 && h->scheme->ends_with_kick) judge(h);
-        split(h, k == 0 && h->scheme->ends_with_kick && !h->started ? h->scheme->n + 1 : k, op->drift * dt, k == 0 && h->counted ? 2 : 3, h->next);
+        split(h, k == 0 && h->scheme->ends_with_kick && !h->started ? h->scheme->n + 1 : k,
+            op->drift * dt, k == 0 && h->counted ? 2 : 3, h->next);
         h->counted = false;
         memcpy(h->now, h->next, (size_t)h->n * sizeof *h->now);
         at += op->drift;
@@ -265,9 +288,10 @@ static struct lattice_stage stage_of(const struct host *h, int k)
 {
     const struct lattice_rk *c = &h->scheme->rk[k];
     double dt = h->options.dt, square = dt * dt;
-    return (struct lattice_stage){(preal)(c->sum_v * dt), (preal)(c->sum_a * square), (preal)(c->next_v * dt), (preal)(c->next_a * square),
-        (preal)(c->next_turn * dt), (preal)(c->sum_turn * dt), (real)(c->sum_k * dt), (real)(c->next_k * dt), k == 0, k == h->scheme->n - 1,
-        h->scheme->is_nystrom};
+    return (struct lattice_stage){(preal)(c->sum_v * dt), (preal)(c->sum_a * square),
+        (preal)(c->next_v * dt), (preal)(c->next_a * square), (preal)(c->next_turn * dt),
+        (preal)(c->sum_turn * dt), (real)(c->sum_k * dt), (real)(c->next_k * dt), k == 0,
+        k == h->scheme->n - 1, h->scheme->is_nystrom};
 }
 
 /* The stage's part in the ledger. */
@@ -275,12 +299,15 @@ static void enter(struct host *h, int64_t i, struct link_cell c, const struct pu
 {
     const struct lattice_rk *of = &h->scheme->rk[k];
     const real *cell = h->cell + h->cells->kind_of[i] * CELL_WIDTH;
-    struct lattice_speed speed = {(real)(of->before * h->options.dt), (real)(of->own * h->options.dt)};
-    if (h->scheme->is_nystrom) c = lattice_speed_of(c, r->a, r->b, h->last_a[i], h->last_b[i], speed, k == 0);
+    struct lattice_speed speed = {
+        (real)(of->before * h->options.dt), (real)(of->own * h->options.dt)};
+    if (h->scheme->is_nystrom)
+        c = lattice_speed_of(c, r->a, r->b, h->last_a[i], h->last_b[i], speed, k == 0);
     h->last_a[i] = r->a;
     h->last_b[i] = r->b;
-    h->ledger[i] = lattice_work_stage(h->ledger[i], r->effort, c, h->cells->bits[i], (double)cell[6], 1 / (double)cell[0], 1 / (double)cell[1],
-        (double)(real)(of->sum_k * h->options.dt));
+    h->ledger[i] =
+        lattice_work_stage(h->ledger[i], r->effort, c, h->cells->bits[i], (double)cell[6],
+            1 / (double)cell[0], 1 / (double)cell[1], (double)(real)(of->sum_k * h->options.dt));
 }
 
 static void rk_step(struct host *h)
@@ -289,7 +316,8 @@ static void rk_step(struct host *h)
     for (int k = 0; k < h->scheme->n; k++) {
         struct lattice_stage stage = stage_of(h, k);
         double t = ((double)h->step + h->scheme->rk[k].at) * h->options.dt;
-        double next = ((double)h->step + (k + 1 < h->scheme->n ? h->scheme->rk[k + 1].at : 1)) * h->options.dt;
+        double next = ((double)h->step + (k + 1 < h->scheme->n ? h->scheme->rk[k + 1].at : 1)) *
+                      h->options.dt;
         load_rows(h, t, next, next);
         pressures(h);
         if (k == 0) judge(h);
@@ -307,8 +335,10 @@ static void rk_step(struct host *h)
             r.a = lattice_hold(r.a, h->cells->bits[i], WORD_FIX, v3(0, 0, 0));
             r.b = lattice_hold(r.b, h->cells->bits[i], WORD_FIX + 3, v3(0, 0, 0));
             struct link_cell mean = c;
-            hold(h, i, &mean, v3_scale((real)0.5, v3_add(r.now_v, r.given_v)), v3_scale((real)0.5, v3_add(r.now_w, r.given_w)));
-            h->next[i] = lattice_stage_next(c, h->start[i], r.a, r.b, mean.v, mean.w, stage, &h->sums[i]);
+            hold(h, i, &mean, v3_scale((real)0.5, v3_add(r.now_v, r.given_v)),
+                v3_scale((real)0.5, v3_add(r.now_w, r.given_w)));
+            h->next[i] =
+                lattice_stage_next(c, h->start[i], r.a, r.b, mean.v, mean.w, stage, &h->sums[i]);
             hold(h, i, &h->next[i], r.given_v, r.given_w);
         }
         memcpy(h->now, h->next, (size_t)h->n * sizeof *h->now);
@@ -335,7 +365,8 @@ void host_observe(struct host *h, struct link_cell *seen)
     h->counted = true;
 }
 
-void host_stress(const struct host *h, struct link_cell *seen, bool extrapolate, struct stress *stress, real *von_mises)
+void host_stress(const struct host *h, struct link_cell *seen, bool extrapolate,
+    struct stress *stress, real *von_mises)
 {
     struct host copy = *h;
     double t = (double)h->step * h->options.dt;

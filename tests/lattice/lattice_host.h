@@ -1,4 +1,5 @@
-/* The lattice on the host, from the laws that the kernels include: same flags, same order, one loop over all cells. */
+/* The lattice on the host, from the laws that the kernels include: same flags, same order, one loop
+ * over all cells. */
 #ifndef LATTICE_HOST_H
 #define LATTICE_HOST_H
 
@@ -28,11 +29,12 @@ struct host {
 
 struct host *host_create(const struct lattice_cells *cells, const struct lattice_options *options);
 void host_free(struct host *h);
-/* As lattice_advance and lattice_resume, but for an observed step of a scheme that ends with a kick: `seen` [n] gets the state, what goes on
- * stays, but for the ledger. */
+/* As lattice_advance and lattice_resume, but for an observed step of a scheme that ends with a
+ * kick: `seen` [n] gets the state, what goes on stays, but for the ledger. */
 void host_step(struct host *h);
 void host_observe(struct host *h, struct link_cell *seen);
 /* Stress of all cells [n] in the state `seen` of this step. */
-void host_stress(const struct host *h, struct link_cell *seen, bool extrapolate, struct stress *stress, real *von_mises);
+void host_stress(const struct host *h, struct link_cell *seen, bool extrapolate,
+    struct stress *stress, real *von_mises);
 
 #endif

@@ -1,5 +1,6 @@
-/* lattice_speed N [single] [turn] [nu] [scheme] [run] [energy]: cells per second of a block of N^3 cells on one rank, and of the memory (triad) in
- * the same run. In seconds that this process had a core, best of many short spans: others may use the machine. A tool, not a test. */
+/* lattice_speed N [single] [turn] [nu] [scheme] [run] [energy]: cells per second of a block of N^3
+ * cells on one rank, and of the memory (triad) in the same run. In seconds that this process had a
+ * core, best of many short spans: others may use the machine. A tool, not a test. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,11 +19,13 @@ static double busy(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* STREAM's triad a = b + s c over arrays beyond all caches, best of many [byte/s], fills of cache lines not counted. */
+/* STREAM's triad a = b + s c over arrays beyond all caches, best of many [byte/s], fills of cache
+ * lines not counted. */
 static double triad(void)
 {
     enum { N = 1 << 21 };
-    double *a = fail_alloc(N * sizeof *a), *b = fail_alloc(N * sizeof *b), *c = fail_alloc(N * sizeof *c), best = 0;
+    double *a = fail_alloc(N * sizeof *a), *b = fail_alloc(N * sizeof *b),
+           *c = fail_alloc(N * sizeof *c), best = 0;
     for (int i = 0; i < N; i++) a[i] = b[i] = c[i] = i;
     for (int k = 0; k < ROUNDS; k++) {
         double t = busy();
@@ -64,11 +67,13 @@ int main(int argc, char **argv)
         if (rate > best) best = rate;
     }
     /* x: read, written, line fetched before; v: read and written in place; word */
-    double fills = 4 + (3 * 6 + 2 * 6) * (double)lattice_v_bytes(l), plain = 4 + 4 * 6 * (double)lattice_v_bytes(l);
-    printf(
-        "%lld cells, runs of %d: %.1f million cells/s, %.2f ns per cell; triad %.1f GB/s (%.1f with fills); bytes per cell %.0f (%.0f with fills): "
-        "%.0f %% of the triad, with fills %.0f %%\n",
-        (long long)cells->n, l->layout->run, best / 1e6, 1e9 / best, memory / 1e9, memory / 1e9 * 4 / 3, plain, fills, 100 * best * plain / memory,
+    double fills = 4 + (3 * 6 + 2 * 6) * (double)lattice_v_bytes(l),
+           plain = 4 + 4 * 6 * (double)lattice_v_bytes(l);
+    printf("%lld cells, runs of %d: %.1f million cells/s, %.2f ns per cell; triad %.1f GB/s (%.1f "
+           "with fills); bytes per cell %.0f (%.0f with fills): "
+           "%.0f %% of the triad, with fills %.0f %%\n",
+        (long long)cells->n, l->layout->run, best / 1e6, 1e9 / best, memory / 1e9,
+        memory / 1e9 * 4 / 3, plain, fills, 100 * best * plain / memory,
         100 * best * fills / (memory * 4 / 3));
     lattice_free(l);
     bodies_free(cells);

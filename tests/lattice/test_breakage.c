@@ -1,5 +1,5 @@
-/* Breakage on the device, in double: one link at its very limit, in each mode; and a body whose links have broken goes on, to the bit, as the body
- * that never had them. */
+/* Breakage on the device, in double: one link at its very limit, in each mode; and a body whose
+ * links have broken goes on, to the bit, as the body that never had them. */
 #include "tests/limit/limit_test.h"
 
 #include "comm/fail.h"
@@ -9,24 +9,33 @@
 #include "tests/mpi_check.h"
 #include "device_tests.h"
 
-static const enum lattice_scheme schemes[5] = {LATTICE_LEAPFROG, LATTICE_RK4, LATTICE_RKN4, LATTICE_PEFRL, LATTICE_VEFRL};
+static const enum lattice_scheme schemes[5] = {
+    LATTICE_LEAPFROG, LATTICE_RK4, LATTICE_RKN4, LATTICE_PEFRL, LATTICE_VEFRL};
 enum { TENSION, SHEAR, BENDING, TWIST };
 
-/* Axis first: displacement of the upper of two cells [m], and its rotation, half that of the link: the lower cell has the opposite. The vector of a
- * quaternion, or a small rotation [1]. */
+/* Axis first: displacement of the upper of two cells [m], and its rotation, half that of the link:
+ * the lower cell has the opposite. The vector of a quaternion, or a small rotation [1]. */
 struct strain {
     double shift[3], turn[3];
 };
 
-/* Mode in which the link of two cells along `axis` breaks in one step from the strain, or -1. E = 1024 Pa, nu = 0, h = 1/2 m. */
-static int mode_of(int axis, struct strain s, struct link_strength strength, enum lattice_scheme scheme, bool turn)
+/* Mode in which the link of two cells along `axis` breaks in one step from the strain, or -1. E =
+ * 1024 Pa, nu = 0, h = 1/2 m. */
+static int mode_of(
+    int axis, struct strain s, struct link_strength strength, enum lattice_scheme scheme, bool turn)
 {
     const struct link_material m = {1000, 1024, 0, 0};
     int size[3] = {1, 1, 1}, mode = -1;
     int64_t count[LATTICE_BREAK_MODES], all = 0;
     size[axis] = 2;
     struct lattice_cells *cells = bodies_create(1, size, 0.5, 1, bodies_block);
-    struct lattice_options o = {.scheme = scheme, .dt = 1e-9, .turn = turn, .material = &m, .n_material = 1, .n_row = 1, .strength = &strength};
+    struct lattice_options o = {.scheme = scheme,
+        .dt = 1e-9,
+        .turn = turn,
+        .material = &m,
+        .n_material = 1,
+        .n_row = 1,
+        .strength = &strength};
     struct lattice_motion x = bodies_motion(2);
     double square = 0;
     for (int a = 0; a < 3; a++) {
@@ -53,26 +62,42 @@ static int mode_of(int axis, struct strain s, struct link_strength strength, enu
     return mode;
 }
 
-/* Forces: f = E h x for a shift x, over h^2. In powers of two this is exact, and so is the limit. Moments: (E h^3/12) chi, chi = 2 x for small
- * rotations x and -x, sin(4 arcsin x) for quaternions with the vectors x and -x; the edge has 6 mom/h^3 in bending, 3 mom/h^3 in twist. */
+/* Forces: f = E h x for a shift x, over h^2. In powers of two this is exact, and so is the limit.
+ * Moments: (E h^3/12) chi, chi = 2 x for small rotations x and -x, sin(4 arcsin x) for quaternions
+ * with the vectors x and -x; the edge has 6 mom/h^3 in bending, 3 mom/h^3 in twist. */
 static void limits(enum lattice_scheme scheme, bool turn)
 {
-    const double x = 1.0 / 1024, none = HUGE_VAL, stress = 1024 * x / 0.5, chi = turn ? sin(4 * asin(x)) : 2 * x, edge = 1024 * chi / 2;
+    const double x = 1.0 / 1024, none = HUGE_VAL, stress = 1024 * x / 0.5,
+                 chi = turn ? sin(4 * asin(x)) : 2 * x, edge = 1024 * chi / 2;
     const double more = nextafter(stress, 1e9), below = 1 - 1e-14, above = 1 + 1e-14;
-    const struct strain pull = {{x, 0, 0}, {0, 0, 0}}, push = {{-100 * x, 0, 0}, {0, 0, 0}}, slide = {{0, 0, -x}, {0, 0, 0}};
+    const struct strain pull = {{x, 0, 0}, {0, 0, 0}}, push = {{-100 * x, 0, 0}, {0, 0, 0}},
+                        slide = {{0, 0, -x}, {0, 0, 0}};
     const struct strain bend = {{0, 0, 0}, {0, x, 0}}, twist = {{0, 0, 0}, {-x, 0, 0}};
     for (int axis = 0; axis < 3; axis++) {
         int c = turn ? axis : 2 - axis; /* the criterion; all of them are the same here */
-        assert_int_equal(mode_of(axis, pull, (struct link_strength){stress, none, c}, scheme, turn), TENSION);
-        assert_int_equal(mode_of(axis, pull, (struct link_strength){more, none, c}, scheme, turn), -1);
-        assert_int_equal(mode_of(axis, push, (struct link_strength){stress, none, c}, scheme, turn), -1);
-        assert_int_equal(mode_of(axis, slide, (struct link_strength){none, stress, c}, scheme, turn), SHEAR);
-        assert_int_equal(mode_of(axis, slide, (struct link_strength){none, more, c}, scheme, turn), -1);
-        assert_int_equal(mode_of(axis, twist, (struct link_strength){none, below * edge / 2, c}, scheme, turn), TWIST);
-        assert_int_equal(mode_of(axis, twist, (struct link_strength){none, above * edge / 2, c}, scheme, turn), -1);
-        if (turn && c != CRITERION_LARGEST) continue; /* faces that turn by any angle also open a little */
-        assert_int_equal(mode_of(axis, bend, (struct link_strength){below * edge, none, c}, scheme, turn), BENDING);
-        assert_int_equal(mode_of(axis, bend, (struct link_strength){above * edge, none, c}, scheme, turn), -1);
+        assert_int_equal(
+            mode_of(axis, pull, (struct link_strength){stress, none, c}, scheme, turn), TENSION);
+        assert_int_equal(
+            mode_of(axis, pull, (struct link_strength){more, none, c}, scheme, turn), -1);
+        assert_int_equal(
+            mode_of(axis, push, (struct link_strength){stress, none, c}, scheme, turn), -1);
+        assert_int_equal(
+            mode_of(axis, slide, (struct link_strength){none, stress, c}, scheme, turn), SHEAR);
+        assert_int_equal(
+            mode_of(axis, slide, (struct link_strength){none, more, c}, scheme, turn), -1);
+        assert_int_equal(
+            mode_of(axis, twist, (struct link_strength){none, below * edge / 2, c}, scheme, turn),
+            TWIST);
+        assert_int_equal(
+            mode_of(axis, twist, (struct link_strength){none, above * edge / 2, c}, scheme, turn),
+            -1);
+        /* faces that turn by any angle also open a little */
+        if (turn && c != CRITERION_LARGEST) continue;
+        assert_int_equal(
+            mode_of(axis, bend, (struct link_strength){below * edge, none, c}, scheme, turn),
+            BENDING);
+        assert_int_equal(
+            mode_of(axis, bend, (struct link_strength){above * edge, none, c}, scheme, turn), -1);
     }
 }
 
@@ -88,13 +113,19 @@ static void schemes_agree(void **state)
     const struct strain pull = {{1.0 / 1024, 0, 0}, {0, 0, 0}};
     (void)state;
     for (int k = 0; k < 5; k++) {
-        assert_int_equal(mode_of(0, pull, (struct link_strength){2, HUGE_VAL, CRITERION_SUM}, schemes[k], true), TENSION);
-        assert_int_equal(mode_of(0, pull, (struct link_strength){nextafter(2, 3), HUGE_VAL, CRITERION_SUM}, schemes[k], true), -1);
+        assert_int_equal(
+            mode_of(0, pull, (struct link_strength){2, HUGE_VAL, CRITERION_SUM}, schemes[k], true),
+            TENSION);
+        assert_int_equal(
+            mode_of(0, pull, (struct link_strength){nextafter(2, 3), HUGE_VAL, CRITERION_SUM},
+                schemes[k], true),
+            -1);
     }
 }
 
 /* n steps from x, into x; links: those left at the end, if not NULL. */
-static uint64_t run(const struct lattice_cells *cells, const struct lattice_options *o, int n, struct lattice_motion *x, int32_t *links)
+static uint64_t run(const struct lattice_cells *cells, const struct lattice_options *o, int n,
+    struct lattice_motion *x, int32_t *links)
 {
     struct lattice *l = lattice_create(dev, comm, cells, o);
     uint64_t digest;
@@ -112,22 +143,30 @@ static void shake(struct lattice_motion *x, int64_t n)
 {
     for (int64_t i = 0; i < n; i++)
         for (int a = 0; a < 3; a++) {
-            x->u[i][a] = 1e-3 * ((double)(mpi_check_random((uint64_t)(3 * i + a)) >> 11) / 4503599627370496.0 - 1);
+            x->u[i][a] =
+                1e-3 *
+                ((double)(mpi_check_random((uint64_t)(3 * i + a)) >> 11) / 4503599627370496.0 - 1);
             x->v[i][a] = -100 * x->u[i][a];
         }
 }
 
-/* All links of the second material break at once, those of the first never. What is left is a body with more free faces
- * (kernels/lattice/law_volume.h). */
+/* All links of the second material break at once, those of the first never. What is left is a body
+ * with more free faces (kernels/lattice/law_volume.h). */
 static void as_if_never_there(void **state)
 {
     const int size[3] = {17, 9, 4};
     const struct link_material material[2] = {{1000, 2e7, 0.3, 0}, {700, 1e7, 0.1, 0}};
-    const struct link_strength strength[2] = {{HUGE_VAL, HUGE_VAL, CRITERION_SUM}, {1e-30, 1e-30, CRITERION_SUM}};
+    const struct link_strength strength[2] = {
+        {HUGE_VAL, HUGE_VAL, CRITERION_SUM}, {1e-30, 1e-30, CRITERION_SUM}};
     (void)state;
     for (int k = 0; k < 5; k++) {
         struct lattice_cells *cells = bodies_create(1, size, 0.1, 2, bodies_mixed);
-        struct lattice_options o = {.scheme = schemes[k], .dt = 1e-4, .turn = true, .material = material, .n_material = 2, .n_row = 1};
+        struct lattice_options o = {.scheme = schemes[k],
+            .dt = 1e-4,
+            .turn = true,
+            .material = material,
+            .n_material = 2,
+            .n_row = 1};
         struct lattice_motion x = bodies_motion(cells->n), all = bodies_motion(cells->n);
         int32_t *links = fail_alloc((size_t)cells->n * sizeof *links);
         int64_t gone = 0, left = 0;
@@ -139,7 +178,8 @@ static void as_if_never_there(void **state)
         run(cells, &o, 1, &x, links);
         for (int64_t i = 0; i < cells->n; i++) {
             left += __builtin_popcount((unsigned)links[i]);
-            gone += __builtin_popcount((unsigned)(cells->bits[i] & CELL_LINKS)) - __builtin_popcount((unsigned)links[i]);
+            gone += __builtin_popcount((unsigned)(cells->bits[i] & CELL_LINKS)) -
+                    __builtin_popcount((unsigned)links[i]);
             if (cells->kind_of[i] == 1) assert_int_equal(links[i], 0);
             cells->bits[i] = (uint16_t)((cells->bits[i] & CELL_FIXED) | links[i]);
         }
@@ -153,15 +193,23 @@ static void as_if_never_there(void **state)
     }
 }
 
-/* Balance of energy over the time 2 ms, over what is released: a block in two halves, pulled apart and moving, whose joint breaks at once. */
+/* Balance of energy over the time 2 ms, over what is released: a block in two halves, pulled apart
+ * and moving, whose joint breaks at once. */
 static double unbalanced(enum lattice_scheme scheme, double dt, double *released)
 {
     const int size[3] = {10, 8, 3};
     const struct link_material material[2] = {{1000, 2e7, 0.3, 0}, {700, 1e7, 0.1, 0}};
-    const struct link_strength strength[2] = {{HUGE_VAL, HUGE_VAL, CRITERION_SUM}, {1e-30, 1e-30, CRITERION_SUM}};
+    const struct link_strength strength[2] = {
+        {HUGE_VAL, HUGE_VAL, CRITERION_SUM}, {1e-30, 1e-30, CRITERION_SUM}};
     struct lattice_cells *cells = bodies_create(1, size, 0.1, 2, bodies_block);
-    struct lattice_options o = {
-        .scheme = scheme, .dt = dt, .turn = true, .energy = true, .material = material, .n_material = 2, .n_row = 1, .strength = strength};
+    struct lattice_options o = {.scheme = scheme,
+        .dt = dt,
+        .turn = true,
+        .energy = true,
+        .material = material,
+        .n_material = 2,
+        .n_row = 1,
+        .strength = strength};
     struct lattice_motion x = bodies_motion(cells->n);
     struct lattice_energy start, now;
     for (int64_t i = 0; i < cells->n; i++) {
@@ -191,9 +239,11 @@ static void released(void **state)
 {
     (void)state;
     for (int k = 0; k < 5; k++) {
-        double coarse_released, fine_released, coarse = unbalanced(schemes[k], 1e-4, &coarse_released);
+        double coarse_released, fine_released,
+            coarse = unbalanced(schemes[k], 1e-4, &coarse_released);
         double fine = unbalanced(schemes[k], 5e-5, &fine_released);
-        printf("%s: %g J released, balance off by %.3g and %.3g of it\n", lattice_schemes_table(schemes[k])->name, fine_released, coarse, fine);
+        printf("%s: %g J released, balance off by %.3g and %.3g of it\n",
+            lattice_schemes_table(schemes[k])->name, fine_released, coarse, fine);
         assert_true(fine_released > 0);
         assert_true(fabs(fine) < 0.3 * fabs(coarse) && fabs(fine) < 0.02);
     }
@@ -201,7 +251,7 @@ static void released(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_link), cmocka_unit_test(schemes_agree), cmocka_unit_test(as_if_never_there), cmocka_unit_test(released)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(one_link), cmocka_unit_test(schemes_agree),
+        cmocka_unit_test(as_if_never_there), cmocka_unit_test(released)};
     return DEVICE_TESTS(tests);
 }

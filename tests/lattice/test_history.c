@@ -1,4 +1,5 @@
-/* Histories: values and means against closed forms, also over corners and backwards; tables from files. */
+/* Histories: values and means against closed forms, also over corners and backwards; tables from
+ * files. */
 #include "../walls/scratch.h"
 
 #include "scene/history.h"
@@ -20,13 +21,15 @@ static void ramp(void **unused)
 {
     (void)unused;
     const struct history h = {.kind = HISTORY_RAMP, .ramp = 0.4};
-    assert_true(history_at(&h, -1) == 0 && history_at(&h, 0.1) == 0.1 / 0.4 && history_at(&h, 0.4) == 1 && history_at(&h, 9) == 1);
+    assert_true(history_at(&h, -1) == 0 && history_at(&h, 0.1) == 0.1 / 0.4 &&
+                history_at(&h, 0.4) == 1 && history_at(&h, 9) == 1);
     uint64_t state = 3;
     for (int k = 0; k < 1000; k++) {
         double a = scratch_random(&state, -0.5, 1), b = scratch_random(&state, -0.5, 1);
         double exact = (ramp_integral(b, 0.4) - ramp_integral(a, 0.4)) / (b - a);
         assert_true(fabs(history_mean(&h, a, b) - exact) < 1e-12);
-        assert_true(history_mean(&h, a, b) == history_mean(&h, b, a) && history_mean(&h, a, a) == history_at(&h, a));
+        assert_true(history_mean(&h, a, b) == history_mean(&h, b, a) &&
+                    history_mean(&h, a, a) == history_at(&h, a));
     }
 }
 
@@ -54,14 +57,19 @@ static void rates(void **unused)
 {
     (void)unused;
     double point[3][2] = {{0.1, 2}, {0.2, -1}, {0.25, 4}};
-    const struct history constant = {.kind = HISTORY_CONSTANT}, ramp = {.kind = HISTORY_RAMP, .ramp = 0.4},
-                         sine = {.kind = HISTORY_SINE, .frequency = 3, .phase = 0.7}, table = {.kind = HISTORY_TABLE, .point = point, .n_point = 3};
+    const struct history constant = {.kind = HISTORY_CONSTANT},
+                         ramp = {.kind = HISTORY_RAMP, .ramp = 0.4},
+                         sine = {.kind = HISTORY_SINE, .frequency = 3, .phase = 0.7},
+                         table = {.kind = HISTORY_TABLE, .point = point, .n_point = 3};
     assert_true(history_rate(&constant, 1) == 0);
-    assert_true(history_rate(&ramp, -1) == 0 && history_rate(&ramp, 0.2) == 2.5 && history_rate(&ramp, 9) == 0);
+    assert_true(history_rate(&ramp, -1) == 0 && history_rate(&ramp, 0.2) == 2.5 &&
+                history_rate(&ramp, 9) == 0);
     assert_true(history_rate(&ramp, 0) == 1.25 && history_rate(&ramp, 0.4) == 1.25);
     assert_true(fabs(history_rate(&sine, 0.2) - 6 * M_PI * cos(6 * M_PI * 0.2 + 0.7)) < 1e-12);
-    assert_true(history_rate(&table, 0) == 0 && fabs(history_rate(&table, 0.15) + 30) < 1e-12 && fabs(history_rate(&table, 0.22) - 100) < 1e-11);
-    assert_true(history_rate(&table, 0.3) == 0 && fabs(history_rate(&table, 0.1) + 15) < 1e-12 && fabs(history_rate(&table, 0.2) - 35) < 1e-11);
+    assert_true(history_rate(&table, 0) == 0 && fabs(history_rate(&table, 0.15) + 30) < 1e-12 &&
+                fabs(history_rate(&table, 0.22) - 100) < 1e-11);
+    assert_true(history_rate(&table, 0.3) == 0 && fabs(history_rate(&table, 0.1) + 15) < 1e-12 &&
+                fabs(history_rate(&table, 0.2) - 35) < 1e-11);
 }
 
 /* Integral of the table from its first time to t: area of the trapezia. */
@@ -83,9 +91,12 @@ static void table(void **unused)
 {
     (void)unused;
     double point[5][2] = {{0.1, 2}, {0.2, -1}, {0.25, 4}, {0.7, 4}, {0.71, 0.5}};
-    const struct history h = {.kind = HISTORY_TABLE, .point = point, .n_point = 5}, one = {.kind = HISTORY_TABLE, .point = point, .n_point = 1};
-    assert_true(history_at(&h, 0) == 2 && history_at(&h, 0.1) == 2 && fabs(history_at(&h, 0.15) - 0.5) < 1e-14 && history_at(&h, 0.5) == 4);
-    assert_true(history_at(&h, 0.71) == 0.5 && history_at(&h, 3) == 0.5 && history_at(&one, -1) == 2 && history_mean(&one, -1, 1) == 2);
+    const struct history h = {.kind = HISTORY_TABLE, .point = point, .n_point = 5},
+                         one = {.kind = HISTORY_TABLE, .point = point, .n_point = 1};
+    assert_true(history_at(&h, 0) == 2 && history_at(&h, 0.1) == 2 &&
+                fabs(history_at(&h, 0.15) - 0.5) < 1e-14 && history_at(&h, 0.5) == 4);
+    assert_true(history_at(&h, 0.71) == 0.5 && history_at(&h, 3) == 0.5 &&
+                history_at(&one, -1) == 2 && history_mean(&one, -1, 1) == 2);
     uint64_t state = 9;
     for (int k = 0; k < 1000; k++) {
         double a = scratch_random(&state, -0.2, 1), b = scratch_random(&state, -0.2, 1);
@@ -133,7 +144,8 @@ static void files(void **unused)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(constant), cmocka_unit_test(ramp), cmocka_unit_test(sine), cmocka_unit_test(rates),
-        cmocka_unit_test(table), cmocka_unit_test(files)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(constant), cmocka_unit_test(ramp),
+        cmocka_unit_test(sine), cmocka_unit_test(rates), cmocka_unit_test(table),
+        cmocka_unit_test(files)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

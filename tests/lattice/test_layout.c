@@ -1,5 +1,6 @@
-/* Runs on every rank against brute force: each link's neighbour is where the kernel looks, words, ghosts of one and two layers, what is interior, and
- * lists of what is sent that match what is received. Host only. */
+/* Runs on every rank against brute force: each link's neighbour is where the kernel looks, words,
+ * ghosts of one and two layers, what is interior, and lists of what is sent that match what is
+ * received. Host only. */
 #include "tests/limit/limit_test.h"
 
 #include "comm/fail.h"
@@ -22,7 +23,9 @@ static int64_t brute(const struct lattice_cells *c, int64_t i, int face)
     int at[3] = {c->at[i][0], c->at[i][1], c->at[i][2]}, grid = c->kind[c->kind_of[i]].grid;
     at[face / 2] += face % 2 ? 1 : -1;
     for (int64_t j = 0; j < c->n; j++)
-        if (c->kind[c->kind_of[j]].grid == grid && c->at[j][0] == at[0] && c->at[j][1] == at[1] && c->at[j][2] == at[2]) return j;
+        if (c->kind[c->kind_of[j]].grid == grid && c->at[j][0] == at[0] && c->at[j][1] == at[1] &&
+            c->at[j][2] == at[2])
+            return j;
     return -1;
 }
 
@@ -36,7 +39,8 @@ static int distance(const struct world *w, int64_t i, int rank)
         int64_t j = brute(w->cells, i, f);
         if (w->owner[j] == rank) return 1;
         for (int g = 0; g < 6; g++)
-            if (w->cells->bits[j] & CELL_LINK(g) && w->owner[brute(w->cells, j, g)] == rank) best = 2;
+            if (w->cells->bits[j] & CELL_LINK(g) && w->owner[brute(w->cells, j, g)] == rank)
+                best = 2;
     }
     return best;
 }
@@ -54,7 +58,8 @@ static void find_places(struct world *w)
     int64_t n = w->cells->n;
     for (int64_t k = 0; k < n * w->n_rank; k++) w->where[k] = -1;
     for (int r = 0; r < w->n_rank; r++)
-        for (int64_t k = 0; k < w->l[r]->n_owned; k++) w->where[r * n + w->l[r]->gid[k]] = w->l[r]->index[k];
+        for (int64_t k = 0; k < w->l[r]->n_owned; k++)
+            w->where[r * n + w->l[r]->gid[k]] = w->l[r]->index[k];
     for (int to = 0; to < w->n_rank; to++) {
         int64_t at = 0;
         for (int from = 0; from < w->n_rank; from++) {
@@ -87,37 +92,49 @@ static void check_cell(const struct world *w, int r, int64_t i)
     assert_int_equal(word & 63, d <= 1 ? w->cells->bits[i] & 63 : 0);
     assert_int_equal(l->row[at], w->cells->row[i]);
     assert_int_equal(at % l->run, w->cells->at[i][l->axis] % l->run);
-    assert_true(l->info[run] & RUN_MIXED || (l->info[run] == w->cells->kind_of[i] && !(w->cells->bits[i] >> 6) && !l->row[at]) || d > 1);
+    assert_true(
+        l->info[run] & RUN_MIXED ||
+        (l->info[run] == w->cells->kind_of[i] && !(w->cells->bits[i] >> 6) && !l->row[at]) ||
+        d > 1);
     if (d == 0) assert_true(is_in(l->force, l->n_force, run));
     if (w->depth == 2 && d <= 1) assert_true(is_in(l->volume, l->n_volume, run));
     for (int f = 0; f < 6 && d < w->depth; f++) {
         if (!(word >> f & 1)) continue;
         int64_t j = brute(w->cells, i, f);
-        int side = f - 2 * (f / 2 > l->axis), there = f / 2 == l->axis ? at + (f % 2 ? 1 : -1) : l->base[side * l->n_run + run] + at % l->run;
+        int side = f - 2 * (f / 2 > l->axis),
+            there = f / 2 == l->axis ? at + (f % 2 ? 1 : -1)
+                                     : l->base[side * l->n_run + run] + at % l->run;
         assert_int_equal(there, w->where[r * n + j]);
-        if (!(l->info[run] & RUN_MIXED)) assert_int_equal(w->cells->kind_of[j], w->cells->kind_of[i]);
+        if (!(l->info[run] & RUN_MIXED))
+            assert_int_equal(w->cells->kind_of[j], w->cells->kind_of[i]);
         if (d == 0 && is_in(l->force, l->n_force_interior, run)) {
             assert_int_equal(w->owner[j], r);
             if (w->depth == 2) assert_true(is_in(l->volume, l->n_volume_interior, there / l->run));
         }
-        if (w->depth == 2 && is_in(l->volume, l->n_volume_interior, run)) assert_int_equal(w->owner[j], r);
+        if (w->depth == 2 && is_in(l->volume, l->n_volume_interior, run))
+            assert_int_equal(w->owner[j], r);
     }
-    if (w->depth == 2 && is_in(l->force, l->n_force_interior, run) && d == 0) assert_true(is_in(l->volume, l->n_volume_interior, run));
+    if (w->depth == 2 && is_in(l->force, l->n_force_interior, run) && d == 0)
+        assert_true(is_in(l->volume, l->n_volume_interior, run));
 }
 
-static void check(struct lattice_cells *cells, int n_rank, int depth, int axis, int run, bool scattered)
+static void check(
+    struct lattice_cells *cells, int n_rank, int depth, int axis, int run, bool scattered)
 {
     struct world w = {.cells = cells, .n_rank = n_rank, .depth = depth};
     int64_t n = cells->n, n_owned = 0;
     w.owner = fail_alloc((size_t)n * sizeof *w.owner);
     w.where = fail_alloc((size_t)(n * n_rank) * sizeof *w.where);
     for (int64_t i = 0; i < n; i++)
-        w.owner[i] = scattered ? (int)(mpi_check_random((uint64_t)i) % (uint64_t)n_rank) : (int)(cells->at[i][0] / 5 + cells->at[i][2] / 4) % n_rank;
+        w.owner[i] = scattered ? (int)(mpi_check_random((uint64_t)i) % (uint64_t)n_rank)
+                               : (int)(cells->at[i][0] / 5 + cells->at[i][2] / 4) % n_rank;
     for (int r = 0; r < n_rank; r++) {
-        w.l[r] = lattice_layout_create(cells, w.owner, r, n_rank, (struct lattice_lay){axis, run}, depth);
+        w.l[r] = lattice_layout_create(
+            cells, w.owner, r, n_rank, (struct lattice_lay){axis, run}, depth);
         n_owned += w.l[r]->n_owned;
         assert_true(w.l[r]->plane >= (int64_t)w.l[r]->n_run * run && w.l[r]->plane % 1024 == 80);
-        for (int k = 0; k < run; k++) assert_true(w.l[r]->word[k] == 0 && w.l[r]->word[(w.l[r]->n_run - 1) * run + k] == 0);
+        for (int k = 0; k < run; k++)
+            assert_true(w.l[r]->word[k] == 0 && w.l[r]->word[(w.l[r]->n_run - 1) * run + k] == 0);
     }
     assert_int_equal(n_owned, n);
     find_places(&w);
@@ -127,7 +144,8 @@ static void check(struct lattice_cells *cells, int n_rank, int depth, int axis, 
             check_cell(&w, r, i);
             n_place += w.where[r * n + i] >= 0;
         }
-        for (int64_t k = 0; k < w.l[r]->plane; k++) n_word += w.l[r]->word[k] & (1 << WORD_OWNED) || (w.l[r]->word[k] & 63) > 0;
+        for (int64_t k = 0; k < w.l[r]->plane; k++)
+            n_word += w.l[r]->word[k] & (1 << WORD_OWNED) || (w.l[r]->word[k] & 63) > 0;
         assert_true(n_word <= n_place);
         lattice_layout_free(w.l[r]);
     }
@@ -138,7 +156,8 @@ static void check(struct lattice_cells *cells, int n_rank, int depth, int axis, 
 static void one_rank(void **state)
 {
     const int size[3] = {37, 5, 4};
-    struct lattice_cells *block = bodies_create(1, size, 0.1, 1, bodies_block), *mixed = bodies_create(2, size, 0.1, 2, bodies_mixed);
+    struct lattice_cells *block = bodies_create(1, size, 0.1, 1, bodies_block),
+                         *mixed = bodies_create(2, size, 0.1, 2, bodies_mixed);
     (void)state;
     for (int run = 16; run <= 48; run += 16)
         for (int axis = 0; axis < 3; axis++) {
@@ -152,7 +171,8 @@ static void one_rank(void **state)
 static void ranks(void **state)
 {
     const int size[3] = {21, 6, 5};
-    struct lattice_cells *voxels = bodies_create(1, size, 0.1, 1, bodies_voxels), *mixed = bodies_create(2, size, 0.1, 2, bodies_mixed);
+    struct lattice_cells *voxels = bodies_create(1, size, 0.1, 1, bodies_voxels),
+                         *mixed = bodies_create(2, size, 0.1, 2, bodies_mixed);
     (void)state;
     for (int n = 2; n <= MOST_RANKS; n += n < 4 ? 1 : 4)
         for (int depth = 1; depth <= 2; depth++) {
@@ -174,15 +194,17 @@ static void run_lengths(void **state)
         struct lattice_lay run = lattice_layout_run(c);
         assert_int_equal(run.axis, best[k].axis);
         assert_int_equal(run.length, best[k].length);
-        for (int64_t i = 0; k < 4 && i < c->n; i++)
-            if (c->at[i][0] == 0) c->bits[i] |= CELL_FIX(0);                     /* now all runs along x have one */
-        if (k < 4) assert_int_equal(lattice_layout_run(c).axis, k == 3 ? 1 : 0); /* short rows would be half empty along y */
+        for (int64_t i = 0; k < 4 && i < c->n; i++) /* now all runs along x have one */
+            if (c->at[i][0] == 0) c->bits[i] |= CELL_FIX(0);
+        /* short rows would be half empty along y */
+        if (k < 4) assert_int_equal(lattice_layout_run(c).axis, k == 3 ? 1 : 0);
         bodies_free(c);
     }
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(one_rank), cmocka_unit_test(ranks), cmocka_unit_test(run_lengths)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(one_rank), cmocka_unit_test(ranks), cmocka_unit_test(run_lengths)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* What acts on cells: whom a boundary selects, sums of forces and moments, pressures, rows and their sharing, histories, messages. */
+/* What acts on cells: whom a boundary selects, sums of forces and moments, pressures, rows and
+ * their sharing, histories, messages. */
 #include "cells_fixture.h"
 
 /* The rows at time t, velocities over [from, to]; owned by the caller. */
@@ -9,7 +10,8 @@ static double (*rows_at(const struct cut cut, double t, double from, double to))
     return rows;
 }
 
-/* Total force, and total moment about the origin, of bodies at rest: force and B on centres, levers as torques sum over a of e_a x L_a. */
+/* Total force, and total moment about the origin, of bodies at rest: force and B on centres, levers
+ * as torques sum over a of e_a x L_a. */
 static void total(const struct cut cut, double force[3], double moment[3])
 {
     double(*rows)[LOAD_WIDTH] = rows_at(cut, 0, 0, 0);
@@ -35,34 +37,41 @@ static void expect_near(const double x[3], double a, double b, double c, double 
 {
     const double y[3] = {a, b, c};
     for (int k = 0; k < 3; k++)
-        if (!(fabs(x[k] - y[k]) < 1e-14 * scale)) fail_msg("component %d: %.17g, expected %.17g", k, x[k], y[k]);
+        if (!(fabs(x[k] - y[k]) < 1e-14 * scale))
+            fail_msg("component %d: %.17g, expected %.17g", k, x[k], y[k]);
 }
 
-/* A bar of 10 x 3 x 2 cells of 0.1 m, the last face loaded: the force acts in the middle of that face, at (1, 0.15, 0.1). */
+/* A bar of 10 x 3 x 2 cells of 0.1 m, the last face loaded: the force acts in the middle of that
+ * face, at (1, 0.15, 0.1). */
 #define BAR BODY("bar", "a", "0.1", BOX(0, 0, 0, 1, 0.3, 0.2))
 #define END "{" BOX(0.99, -1, -1, 1.01, 1, 1) "}"
 
 static void force_on_a_face(void **state)
 {
-    struct cut cut = cut_scene(*state, LATTICE(BAR "boundaries:\n - {where: " END ", force: [7, 11, 13]}\n"));
+    struct cut cut =
+        cut_scene(*state, LATTICE(BAR "boundaries:\n - {where: " END ", force: [7, 11, 13]}\n"));
     double force[3], moment[3];
     total(cut, force, moment);
     expect_near(force, 7, 11, 13, 30);
     expect_near(moment, 0.15 * 13 - 0.1 * 11, 0.1 * 7 - 1 * 13, 1 * 11 - 0.15 * 7, 30);
     double(*rows)[LOAD_WIDTH] = rows_at(cut, 0, 0, 0);
     assert_int_equal(cut.cells->loads->n_row, 2);
-    for (int64_t i = 0; i < cut.cells->n; i++) assert_int_equal(cut.cells->row[i], cut.cells->at[i][0] == 9);
+    for (int64_t i = 0; i < cut.cells->n; i++)
+        assert_int_equal(cut.cells->row[i], cut.cells->at[i][0] == 9);
     /* t.n = 7 N/(6 h^2) of each face, by the normals at the start */
-    assert_true(fabs(rows[1][LOAD_TRACTION] - 7 / 0.06) < 1e-11 && fabs(rows[1][LOAD_LEVER + 1] - 0.05 * 11 / 6) < 1e-15);
+    assert_true(fabs(rows[1][LOAD_TRACTION] - 7 / 0.06) < 1e-11 &&
+                fabs(rows[1][LOAD_LEVER + 1] - 0.05 * 11 / 6) < 1e-15);
     for (int c = 0; c < LOAD_WIDTH; c++) assert_true(rows[0][c] == 0);
     free(rows);
     cut_free(cut);
 }
 
-/* Faces by their own centres: a region with the whole last layer also takes the faces around it, 6 + 3 + 3 + 2 + 2 in all. */
+/* Faces by their own centres: a region with the whole last layer also takes the faces around it, 6
+ * + 3 + 3 + 2 + 2 in all. */
 static void force_on_a_layer(void **state)
 {
-    struct cut cut = cut_scene(*state, LATTICE(BAR "boundaries:\n - {where: {" BOX(0.9, -1, -1, 2, 1, 1) "}, force: [0, 0, -16]}\n"));
+    struct cut cut = cut_scene(*state, LATTICE(BAR "boundaries:\n - {where: {" BOX(
+                                           0.9, -1, -1, 2, 1, 1) "}, force: [0, 0, -16]}\n"));
     double force[3], moment[3];
     total(cut, force, moment);
     expect_near(force, 0, 0, -16, 20);
@@ -81,8 +90,10 @@ static void force_on_a_layer(void **state)
 /* Within a body there is no face: equal shares on the centres. */
 static void force_on_centres(void **state)
 {
-    struct cut cut =
-        cut_scene(*state, LATTICE(CUBE(5) "boundaries:\n - {where: {sphere: {center: [2.5, 2.5, 2.5], radius: 1}}, force: [3, 0, 14]}\n"));
+    struct cut cut = cut_scene(*state,
+        LATTICE(CUBE(
+            5) "boundaries:\n - {where: {sphere: {center: [2.5, 2.5, 2.5], radius: 1}}, force: "
+               "[3, 0, 14]}\n"));
     double force[3], moment[3];
     total(cut, force, moment);
     expect_near(force, 3, 0, 14, 20);
@@ -90,22 +101,27 @@ static void force_on_centres(void **state)
     double(*rows)[LOAD_WIDTH] = rows_at(cut, 0, 0, 0);
     int64_t n = 0;
     for (int64_t i = 0; i < cut.cells->n; i++) n += cut.cells->row[i] == 1;
-    assert_true(n == 7 && cut.cells->loads->n_row == 2 && rows[1][LOAD_FORCE + 2] == 2 && rows[1][LOAD_TRACTION] == 0);
+    assert_true(n == 7 && cut.cells->loads->n_row == 2 && rows[1][LOAD_FORCE + 2] == 2 &&
+                rows[1][LOAD_TRACTION] == 0);
     free(rows);
     cut_free(cut);
 }
 
-/* p A n on a face of 3 x 2 cells; nothing in all on a closed surface; the traction of each cell is -p times its faces. */
+/* p A n on a face of 3 x 2 cells; nothing in all on a closed surface; the traction of each cell is
+ * -p times its faces. */
 static void pressures(void **state)
 {
-    struct cut cut = cut_scene(*state, LATTICE(BAR "boundaries:\n - {where: " END ", pressure: 5}\n"));
+    struct cut cut =
+        cut_scene(*state, LATTICE(BAR "boundaries:\n - {where: " END ", pressure: 5}\n"));
     double force[3], moment[3];
     total(cut, force, moment);
     expect_near(force, -5 * 0.06, 0, 0, 1);
     expect_near(moment, 0, 0.1 * -0.3, 0.15 * 0.3, 1);
     cut_free(cut);
-    cut = cut_scene(
-        *state, LATTICE(BODY("ball", "a", "0.1", "sphere: {center: [0, 0, 0], radius: 0.5}") "boundaries:\n - {where: all, pressure: 2}\n"));
+    cut = cut_scene(*state,
+        LATTICE(BODY("ball", "a", "0.1",
+            "sphere: {center: [0, 0, 0], radius: 0.5}") "boundaries:\n - {where: all, pressure: "
+                                                        "2}\n"));
     total(cut, force, moment);
     expect_near(force, 0, 0, 0, 1);
     expect_near(moment, 0, 0, 0, 1);
@@ -125,15 +141,17 @@ static void pressures(void **state)
     cut_free(cut);
 }
 
-/* Three forces on overlapping layers: cells with the same set of them share a row, and rows are numbered as cells come. */
+/* Three forces on overlapping layers: cells with the same set of them share a row, and rows are
+ * numbered as cells come. */
 static void rows_are_shared(void **state)
 {
-    struct cut cut = cut_scene(*state,
-        LATTICE(BAR
-            "boundaries:\n"
-            " - {where: {" BOX(-1, -1, -1, 0.6, 1, 1) "}, acceleration: [1, 0, 0]}\n"
-                                                      " - {where: {" BOX(0.3, -1, -1, 2, 1, 1) "}, acceleration: [0, 20, 0], history: {ramp: 4}}\n"
-                                                                                               " - {where: {body: bar}, acceleration: [0, 0, 3]}\n"));
+    struct cut cut = cut_scene(
+        *state, LATTICE(BAR "boundaries:\n"
+                            " - {where: {" BOX(-1, -1, -1, 0.6, 1,
+                                1) "}, acceleration: [1, 0, 0]}\n"
+                                   " - {where: {" BOX(0.3, -1, -1, 2, 1,
+                                       1) "}, acceleration: [0, 20, 0], history: {ramp: 4}}\n"
+                                          " - {where: {body: bar}, acceleration: [0, 0, 3]}\n"));
     double(*rows)[LOAD_WIDTH] = rows_at(cut, 1, 0, 0);
     assert_int_equal(cut.cells->loads->n_row, 4);
     assert_int_equal(cut.cells->loads->begin[4], 2 + 3 + 2);
@@ -147,21 +165,27 @@ static void rows_are_shared(void **state)
     cut_free(cut);
 }
 
-/* Forces as they are at t, velocities as their mean over the drift; free components stay with the forces. */
+/* Forces as they are at t, velocities as their mean over the drift; free components stay with the
+ * forces. */
 static void histories(void **state)
 {
-    struct cut cut = cut_scene(*state,
-        LATTICE(BAR "boundaries:\n"
-                    " - {where: " END ", force: [6, 0, 0], history: {ramp: 2}}\n"
-                    " - {where: {" BOX(-1, -1, -1, 0.1, 1, 1) "}, velocity: [free, 0, 8], history: {ramp: 2}}\n"
-                                                              " - {where: {" BOX(-1, -1, -1, 0.1, 1, 1) "}, angular_velocity: [1, free, free]}\n"));
+    struct cut cut =
+        cut_scene(*state, LATTICE(BAR "boundaries:\n"
+                                      " - {where: " END ", force: [6, 0, 0], history: {ramp: 2}}\n"
+                                      " - {where: {" BOX(-1, -1, -1, 0.1, 1,
+                                          1) "}, velocity: [free, 0, 8], history: {ramp: 2}}\n"
+                                             " - {where: {" BOX(-1, -1, -1, 0.1, 1,
+                                                 1) "}, angular_velocity: [1, free, free]}\n"));
     double(*rows)[LOAD_WIDTH] = rows_at(cut, 0.5, 1, 4);
     const double *first = rows[cut.cells->row[0]], *last = rows[cut.cells->row[cut.cells->n - 1]];
     assert_true(fabs(last[LOAD_FORCE] - 0.25) < 1e-15);
-    assert_true(fabs(last[LOAD_RATE] * 0.5 - last[LOAD_TRACTION]) < 1e-12 && last[LOAD_RATE] > 0); /* a ramp: value over time */
-    assert_true(first[LOAD_NOW + 2] == 8 * 0.25 && first[LOAD_NOW + 3] == 1 && first[LOAD_NOW] == 0);
+    /* a ramp: value over time */
+    assert_true(fabs(last[LOAD_RATE] * 0.5 - last[LOAD_TRACTION]) < 1e-12 && last[LOAD_RATE] > 0);
+    assert_true(
+        first[LOAD_NOW + 2] == 8 * 0.25 && first[LOAD_NOW + 3] == 1 && first[LOAD_NOW] == 0);
     /* (integral of t/2 from 1 to 2) + 2 over 3 */
-    assert_true(fabs(first[LOAD_VELOCITY + 2] - 8 * (0.75 + 2) / 3) < 1e-14 && first[LOAD_VELOCITY + 3] == 1 && first[LOAD_VELOCITY] == 0);
+    assert_true(fabs(first[LOAD_VELOCITY + 2] - 8 * (0.75 + 2) / 3) < 1e-14 &&
+                first[LOAD_VELOCITY + 3] == 1 && first[LOAD_VELOCITY] == 0);
     assert_int_equal(cut.cells->bits[0] & CELL_FIXED, CELL_FIX(1) | CELL_FIX(2) | CELL_FIX(3));
     free(rows);
     cut_free(cut);
@@ -170,22 +194,28 @@ static void histories(void **state)
 /* One boundary over two grids: the lever is half of each one's own edge. */
 static void two_grids(void **state)
 {
-    struct cut cut = cut_scene(*state, LATTICE(BODY("one", "a", "1", BOX(0, 0, 0, 1, 1, 1)) BODY("two", "a", "2",
-                                           BOX(5, 0, 0, 7, 2, 2)) "boundaries:\n - {where: {" BOX(-1, -1, -1, 9, 9, 0.01) "}, force: [2, 0, 0]}\n"));
+    struct cut cut =
+        cut_scene(*state, LATTICE(BODY("one", "a", "1", BOX(0, 0, 0, 1, 1, 1)) BODY("two", "a", "2",
+                              BOX(5, 0, 0, 7, 2, 2)) "boundaries:\n - {where: {" BOX(-1, -1, -1, 9,
+                              9, 0.01) "}, force: [2, 0, 0]}\n"));
     double(*rows)[LOAD_WIDTH] = rows_at(cut, 0, 0, 0);
     assert_true(cut.cells->n == 2 && cut.cells->loads->n_row == 3);
-    for (int i = 0; i < 2; i++) assert_true(rows[i + 1][LOAD_FORCE] == 1 && rows[i + 1][LOAD_LEVER + 6] == -0.5 * (i + 1));
+    for (int i = 0; i < 2; i++)
+        assert_true(rows[i + 1][LOAD_FORCE] == 1 && rows[i + 1][LOAD_LEVER + 6] == -0.5 * (i + 1));
     free(rows);
     cut_free(cut);
 }
 
-/* Centres and faces on the region's surface to rounding are in it: 0.1 cells, and a region that ends at their centres and faces. */
+/* Centres and faces on the region's surface to rounding are in it: 0.1 cells, and a region that
+ * ends at their centres and faces. */
 static void selection_on_surfaces(void **state)
 {
-    struct cut cut = cut_scene(*state, LATTICE(BAR "boundaries:\n"
-                                                   " - {where: {" BOX(0.35, 0, 0, 0.55, 0.3, 0.2) "}, fix: [x]}\n"
-                                                                                                  " - {where: {body: bar, " BOX(1, 0.05, 0.05, 1,
-                                                                                                      0.15, 0.15) "}, force: [0, 1, 0]}\n"));
+    struct cut cut =
+        cut_scene(*state, LATTICE(BAR "boundaries:\n"
+                                      " - {where: {" BOX(0.35, 0, 0, 0.55, 0.3,
+                                          0.2) "}, fix: [x]}\n"
+                                               " - {where: {body: bar, " BOX(1, 0.05, 0.05, 1, 0.15,
+                                                   0.15) "}, force: [0, 1, 0]}\n"));
     int64_t n_fix = 0, n_load = 0;
     for (int64_t i = 0; i < cut.cells->n; i++) {
         int x = cut.cells->at[i][0], y = cut.cells->at[i][1];
@@ -198,7 +228,9 @@ static void selection_on_surfaces(void **state)
     cut_free(cut);
 }
 
-#define BAD(boundary) LATTICE(CUBE(4) "boundaries:\n - {where: {" BOX(-1, -1, -1, 0.6, 9, 9) "}, fix: [x, z]}\n" boundary)
+#define BAD(boundary)                                                                              \
+    LATTICE(CUBE(4) "boundaries:\n - {where: {" BOX(                                               \
+        -1, -1, -1, 0.6, 9, 9) "}, fix: [x, z]}\n" boundary)
 #define FIRST "{" BOX(-0.1, -1, -1, 0.6, 9, 9) "}"
 
 static void messages(void **state)
@@ -206,26 +238,36 @@ static void messages(void **state)
     struct fixture *f = *state;
     cut_expect_one(f, BAD(" - {where: {sphere: {center: [1, 1, 1], radius: 0.1}}, fix: [x]}\n"),
         "scene.yaml:8:4: boundaries[1].where: no cell has its centre in this region");
-    cut_expect_one(f, BAD(" - {where: {sphere: {center: [9, 1, 1], radius: 0.1}}, force: [1, 0, 0]}\n"),
+    cut_expect_one(f,
+        BAD(" - {where: {sphere: {center: [9, 1, 1], radius: 0.1}}, force: [1, 0, 0]}\n"),
         "scene.yaml:8:4: boundaries[1].where: nothing is in this region");
     cut_expect_one(f, BAD(" - {where: {sphere: {center: [2, 2, 2], radius: 1}}, pressure: 1}\n"),
         "scene.yaml:8:4: boundaries[1].where: no free face has its centre in this region");
-    cut_expect_one(
-        f, BAD(" - {where: " FIRST ", force: [0, 1, -3]}\n"), "scene.yaml:8:4: boundaries[1].force: every cell that it acts on is fixed in z");
+    cut_expect_one(f, BAD(" - {where: " FIRST ", force: [0, 1, -3]}\n"),
+        "scene.yaml:8:4: boundaries[1].force: every cell that it acts on is fixed in z");
     cut_expect_one(f, BAD(" - {where: " FIRST ", acceleration: [1, 0, 0]}\n"),
         "scene.yaml:8:4: boundaries[1].acceleration: every cell that it acts on is fixed in x");
-    cut_expect_one(f, BAD(" - {where: " FIRST ", velocity: [free, 1, free]}\n - {where: " FIRST ", pressure: 1}\n"),
+    cut_expect_one(f,
+        BAD(" - {where: " FIRST ", velocity: [free, 1, free]}\n - {where: " FIRST
+            ", pressure: 1}\n"),
         "scene.yaml:9:4: boundaries[2].pressure: every cell that it acts on is fixed");
     cut_expect_one(f, BAD(" - {where: {" BOX(0, 0, 0, 9, 9, 9) "}, velocity: [1, 1, free]}\n"),
-        "scene.yaml:8:4: boundaries[1].where: the motion in x of some of these cells is prescribed by a boundary before this one");
-    const char *const two[] = {"scene.yaml:8:4: boundaries[1].where: no cell has its centre in this region",
+        "scene.yaml:8:4: boundaries[1].where: the motion in x of some of these cells is "
+        "prescribed by a boundary before this one");
+    const char *const two[] = {
+        "scene.yaml:8:4: boundaries[1].where: no cell has its centre in this region",
         "scene.yaml:9:4: boundaries[2].force: every cell that it acts on is fixed in x"};
-    cut_expect(f, BAD(" - {where: {" BOX(9, 9, 9, 10, 10, 10) "}, velocity: [1, 1, 1]}\n - {where: " FIRST ", force: [1, 0, 0]}\n"), two, 2);
+    cut_expect(f,
+        BAD(" - {where: {" BOX(9, 9, 9, 10, 10, 10) "}, velocity: [1, 1, 1]}\n - {where: " FIRST
+                                                    ", force: [1, 0, 0]}\n"),
+        two, 2);
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {CUT_TEST(force_on_a_face), CUT_TEST(force_on_a_layer), CUT_TEST(force_on_centres), CUT_TEST(pressures),
-        CUT_TEST(rows_are_shared), CUT_TEST(histories), CUT_TEST(two_grids), CUT_TEST(selection_on_surfaces), CUT_TEST(messages)};
+    const struct CMUnitTest tests[] = {CUT_TEST(force_on_a_face), CUT_TEST(force_on_a_layer),
+        CUT_TEST(force_on_centres), CUT_TEST(pressures), CUT_TEST(rows_are_shared),
+        CUT_TEST(histories), CUT_TEST(two_grids), CUT_TEST(selection_on_surfaces),
+        CUT_TEST(messages)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

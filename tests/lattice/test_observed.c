@@ -1,5 +1,6 @@
-/* What is measured of the observed state, on any number of ranks: stress of cells, energies and momenta have the bits that one rank finds, whichever
- * scheme led there, and asking does not change what follows, nor does an account that is kept. */
+/* What is measured of the observed state, on any number of ranks: stress of cells, energies and
+ * momenta have the bits that one rank finds, whichever scheme led there, and asking does not change
+ * what follows, nor does an account that is kept. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,7 +20,8 @@ static void rows_at(void *context, double t, double from, double to, double *row
     for (int r = 1; r < 5; r++)
         for (int k = 0; k < LOAD_WIDTH; k++) {
             bool over_drift = k >= LOAD_VELOCITY && k < LOAD_NOW;
-            rows[r * LOAD_WIDTH + k] = (k < LOAD_VELOCITY ? 50 : 3) * sin(r + k + 3e3 * (over_drift ? from + to : t));
+            rows[r * LOAD_WIDTH + k] =
+                (k < LOAD_VELOCITY ? 50 : 3) * sin(r + k + 3e3 * (over_drift ? from + to : t));
         }
 }
 
@@ -30,7 +32,8 @@ struct seen {
 };
 
 /* Five steps, measured at the third (if `peek`) and the last. */
-static struct seen look(const struct comm *who, const struct lattice_cells *cells, const struct lattice_options *o, bool extrapolate, bool peek)
+static struct seen look(const struct comm *who, const struct lattice_cells *cells,
+    const struct lattice_options *o, bool extrapolate, bool peek)
 {
     struct lattice *l = lattice_create(dev, who, cells, o);
     struct lattice_stress *stress = lattice_stress_create(l, extrapolate);
@@ -60,7 +63,8 @@ static struct seen look(const struct comm *who, const struct lattice_cells *cell
     return s;
 }
 
-static void check(const int size[3], bodies_solid *solid, int n_grid, bool extrapolate, struct lattice_options o)
+static void check(
+    const int size[3], bodies_solid *solid, int n_grid, bool extrapolate, struct lattice_options o)
 {
     struct link_material material[2] = {{1000, 2e7, 0.3, 0}, {700, 1e7, 0.1, 0}};
     const double alpha[2] = {0, 50};
@@ -75,7 +79,8 @@ static void check(const int size[3], bodies_solid *solid, int n_grid, bool extra
     o.gravity[2] = -9.81;
     struct lattice_cells *cells = bodies_create(n_grid, size, 0.1, 2, solid);
     bodies_shake(cells, 5, 100);
-    struct seen one = look(&alone, cells, &o, extrapolate, true), all = look(comm, cells, &o, extrapolate, true),
+    struct seen one = look(&alone, cells, &o, extrapolate, true),
+                all = look(comm, cells, &o, extrapolate, true),
                 blind = look(comm, cells, &o, extrapolate, false);
     o.energy = false;
     struct seen plain = look(comm, cells, &o, extrapolate, false);
@@ -96,7 +101,8 @@ static void check(const int size[3], bodies_solid *solid, int n_grid, bool extra
     CHECK(!memcmp(&all.energy[1], &blind.energy[1], sizeof blind.energy[1]));
     CHECK(memcmp(&one.energy[0], &one.energy[1], sizeof one.energy[0])); /* something happens */
     for (size_t k = 0; k < sizeof one.energy[1] / sizeof *e; k++) {
-        bool may_be_zero = &e[k] == &one.energy[1].released || (&e[k] == &one.energy[1].links && !(material[0].damping > 0));
+        bool may_be_zero = &e[k] == &one.energy[1].released ||
+                           (&e[k] == &one.energy[1].links && !(material[0].damping > 0));
         CHECK(fabs(e[k]) > 0 || may_be_zero);
     }
     CHECK(isnan(plain.energy[1].work) && plain.energy[1].elastic == e[3]);
@@ -112,11 +118,15 @@ int main(int argc, char **argv)
     const int size[3] = {41, 7, 5};
     const enum lattice_scheme scheme[3] = {LATTICE_LEAPFROG, LATTICE_RK4, LATTICE_PEFRL};
     comm = comm_create(&argc, &argv);
-    alone = (struct comm){.world = MPI_COMM_SELF, .node = MPI_COMM_SELF, .n_rank = 1, .n_node_rank = 1};
+    alone =
+        (struct comm){.world = MPI_COMM_SELF, .node = MPI_COMM_SELF, .n_rank = 1, .n_node_rank = 1};
     dev = device_open(comm, NULL, true, false);
     if (!dev->fp64) return 77;
-    for (int k = 0; k < 3; k++) check(size, bodies_mixed, 2, k == 1, (struct lattice_options){.turn = k != 1, .scheme = scheme[k]});
-    check(size, bodies_mixed, 1, true, (struct lattice_options){.turn = true, .real_is_float = true});
+    for (int k = 0; k < 3; k++)
+        check(size, bodies_mixed, 2, k == 1,
+            (struct lattice_options){.turn = k != 1, .scheme = scheme[k]});
+    check(
+        size, bodies_mixed, 1, true, (struct lattice_options){.turn = true, .real_is_float = true});
     device_free(dev);
     comm_free(comm);
     return 0;

@@ -1,4 +1,5 @@
-/* The same bits on any number of ranks as on one: each rank runs the whole body alone, then its part of it, and compares digests. */
+/* The same bits on any number of ranks as on one: each rank runs the whole body alone, then its
+ * part of it, and compares digests. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,15 +14,16 @@ static void rows_at(void *context, double t, double from, double to, double *row
     (void)context;
     for (int r = 1; r < 5; r++)
         for (int k = 0; k < LOAD_WIDTH; k++)
-            rows[r * LOAD_WIDTH + k] = (k < LOAD_VELOCITY ? 50 : 3) * sin(r + k + 3e3 * (k < LOAD_VELOCITY ? t : from + to));
+            rows[r * LOAD_WIDTH + k] = (k < LOAD_VELOCITY ? 50 : 3) *
+                                       sin(r + k + 3e3 * (k < LOAD_VELOCITY ? t : from + to));
 }
 
 static struct device *dev;
 static struct comm *comm, alone;
 
 /* count: links broken by mode. */
-static uint64_t digest(
-    const struct comm *who, const struct lattice_cells *cells, const struct lattice_options *o, int n_step, bool observe, int64_t *count)
+static uint64_t digest(const struct comm *who, const struct lattice_cells *cells,
+    const struct lattice_options *o, int n_step, bool observe, int64_t *count)
 {
     struct lattice *l = lattice_create(dev, who, cells, o);
     uint64_t value = 0;
@@ -45,7 +47,8 @@ static uint64_t digest(
     return value;
 }
 
-static void check(const int size[3], bodies_solid *solid, int n_grid, int n_material, struct lattice_options o)
+static void check(
+    const int size[3], bodies_solid *solid, int n_grid, int n_material, struct lattice_options o)
 {
     struct link_material material[2] = {{1000, 2e7, 0.3, 0}, {700, 1e7, 0.1, 0}};
     const double alpha[2] = {20, 50};
@@ -64,10 +67,12 @@ static void check(const int size[3], bodies_solid *solid, int n_grid, int n_mate
         for (int64_t i = 0; i < cells->n; i++) cells->row[i] = 0;
     bodies_shake(cells, 5, 100);
     int64_t count[3][LATTICE_BREAK_MODES];
-    uint64_t one = digest(&alone, cells, &o, 10, false, count[0]), all = digest(comm, cells, &o, 10, false, count[1]);
+    uint64_t one = digest(&alone, cells, &o, 10, false, count[0]),
+             all = digest(comm, cells, &o, 10, false, count[1]);
     CHECK(one == all);
     CHECK(one == digest(comm, cells, &o, 10, true, count[2]));
-    CHECK(!memcmp(count[0], count[1], sizeof count[0]) && !memcmp(count[0], count[2], sizeof count[0]));
+    CHECK(!memcmp(count[0], count[1], sizeof count[0]) &&
+          !memcmp(count[0], count[2], sizeof count[0]));
     if (o.strength) CHECK(count[0][0] > 20 && count[0][1] > 20 && count[0][2] > 20);
     o.dt = 1.0001e-4;
     CHECK(digest(comm, cells, &o, 10, false, count[0]) != one); /* the digest sees what happens */
@@ -77,19 +82,27 @@ static void check(const int size[3], bodies_solid *solid, int n_grid, int n_mate
 int main(int argc, char **argv)
 {
     const int size[3] = {41, 9, 7}, thin[3] = {70, 1, 1}, tiny[3] = {2, 1, 1};
-    const enum lattice_scheme scheme[5] = {LATTICE_LEAPFROG, LATTICE_RK4, LATTICE_RKN4, LATTICE_PEFRL, LATTICE_VEFRL};
+    const enum lattice_scheme scheme[5] = {
+        LATTICE_LEAPFROG, LATTICE_RK4, LATTICE_RKN4, LATTICE_PEFRL, LATTICE_VEFRL};
     comm = comm_create(&argc, &argv);
-    alone = (struct comm){.world = MPI_COMM_SELF, .node = MPI_COMM_SELF, .n_rank = 1, .n_node_rank = 1};
+    alone =
+        (struct comm){.world = MPI_COMM_SELF, .node = MPI_COMM_SELF, .n_rank = 1, .n_node_rank = 1};
     dev = device_open(comm, NULL, true, false);
     check(size, bodies_block, 1, 1, (struct lattice_options){0});
     check(thin, bodies_block, 1, 1, (struct lattice_options){.turn = true});
     check(tiny, bodies_block, 1, 1, (struct lattice_options){0});
-    const struct link_strength strength[4] = {{4e5, 8e5, 2}, {6e5, 6e5, 0}, {8e5, 4e5, 1}, {10e5, 2e5, 2}};
-    for (int k = 0; k < 5; k++) check(size, bodies_mixed, 2, 2, (struct lattice_options){.turn = true, .scheme = scheme[k]});
-    for (int k = 0; k < 5; k++) check(size, bodies_mixed, 2, 2, (struct lattice_options){.turn = true, .scheme = scheme[k], .strength = strength});
+    const struct link_strength strength[4] = {
+        {4e5, 8e5, 2}, {6e5, 6e5, 0}, {8e5, 4e5, 1}, {10e5, 2e5, 2}};
+    for (int k = 0; k < 5; k++)
+        check(
+            size, bodies_mixed, 2, 2, (struct lattice_options){.turn = true, .scheme = scheme[k]});
+    for (int k = 0; k < 5; k++)
+        check(size, bodies_mixed, 2, 2,
+            (struct lattice_options){.turn = true, .scheme = scheme[k], .strength = strength});
     check(size, bodies_block, 1, 1, (struct lattice_options){.strength = strength});
     check(size, bodies_mixed, 2, 2, (struct lattice_options){.real_is_float = true});
-    check(size, bodies_voxels, 1, 2, (struct lattice_options){.turn = true, .real_is_float = true, .position_is_float = true});
+    check(size, bodies_voxels, 1, 2,
+        (struct lattice_options){.turn = true, .real_is_float = true, .position_is_float = true});
     device_free(dev);
     comm_free(comm);
     return 0;

@@ -1,4 +1,5 @@
-/* A column through a surface gives what each of its points gives alone: tetrahedra, nested and turned, at random heights and at those of corners. */
+/* A column through a surface gives what each of its points gives alone: tetrahedra, nested and
+ * turned, at random heights and at those of corners. */
 #include "../walls/scratch.h"
 
 #include "shape/region.h"
@@ -39,7 +40,9 @@ static void column_is_its_points(void **unused)
             uint8_t holds[64];
             double x[3] = {scratch_random(&state, -0.6, 0.6), scratch_random(&state, -0.6, 0.6), 0};
             if (line == 0) x[0] = x[1] = 0; /* through a corner of both */
-            for (int n = 0; n < 64; n++) z[n] = n < 24 ? corner[9 * (n % 8) + 3 * (n / 8) + 2] : scratch_random(&state, -1, 1);
+            for (int n = 0; n < 64; n++)
+                z[n] =
+                    n < 24 ? corner[9 * (n % 8) + 3 * (n / 8) + 2] : scratch_random(&state, -1, 1);
             qsort(z, 64, sizeof *z, by_size);
             region_column(&shape, x[0], x[1], z, 64, 0, holds);
             for (int n = 0; n < 64; n++) {
@@ -58,7 +61,8 @@ static void column_is_its_points(void **unused)
 static void insets(void **unused)
 {
     (void)unused;
-    const struct region region[] = {{.kind = REGION_BOX, .max = {2, 2, 2}}, {.kind = REGION_SPHERE, .center = {1, 1, 1}, .radius = 1},
+    const struct region region[] = {{.kind = REGION_BOX, .max = {2, 2, 2}},
+        {.kind = REGION_SPHERE, .center = {1, 1, 1}, .radius = 1},
         {.kind = REGION_CYLINDER, .from = {1, 0, 1}, .to = {1, 2, 1}, .radius = 1}};
     for (int k = 0; k < 3; k++) {
         struct region_shape shape;
@@ -67,9 +71,11 @@ static void insets(void **unused)
             double x[3] = {1, 1, 1};
             assert_true(fabs(shape.low[a]) < 1e-15 && fabs(shape.high[a] - 2) < 1e-15);
             x[a] = 1.9;
-            assert_true(region_holds(&shape, x, 0) && region_holds(&shape, x, 0.09) && !region_holds(&shape, x, 0.11));
+            assert_true(region_holds(&shape, x, 0) && region_holds(&shape, x, 0.09) &&
+                        !region_holds(&shape, x, 0.11));
             x[a] = -0.1;
-            assert_true(!region_holds(&shape, x, 0) && !region_holds(&shape, x, -0.09) && region_holds(&shape, x, -0.11));
+            assert_true(!region_holds(&shape, x, 0) && !region_holds(&shape, x, -0.09) &&
+                        region_holds(&shape, x, -0.11));
         }
         region_close(&shape);
     }
@@ -77,6 +83,7 @@ static void insets(void **unused)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(column_is_its_points), cmocka_unit_test(insets)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(column_is_its_points), cmocka_unit_test(insets)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

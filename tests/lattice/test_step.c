@@ -1,5 +1,6 @@
-/* Steps of each scheme on the device against the same laws on the host, bit for bit, with one work-item per run and with one per cell; observed steps
- * change nothing. Compiled once for each set of features and each precision, see meson.build. */
+/* Steps of each scheme on the device against the same laws on the host, bit for bit, with one
+ * work-item per run and with one per cell; observed steps change nothing. Compiled once for each
+ * set of features and each precision, see meson.build. */
 #include "tests/limit/limit_test.h"
 
 #include <string.h>
@@ -17,18 +18,28 @@ static void rows_at(void *context, double t, double from, double to, double *row
     (void)context;
     for (int r = 1; r < 5; r++)
         for (int k = 0; k < LOAD_WIDTH; k++) {
-            double size = k < LOAD_BODY ? 100 : k < LOAD_ACCELERATION ? 1000 : k < LOAD_VELOCITY + 3 ? 10 : 30;
-            rows[r * LOAD_WIDTH + k] = size * (k < LOAD_VELOCITY ? sin(r + k + 3e3 * t) : cos(r * k + 2e3 * (from + to)));
+            double size = k < LOAD_BODY           ? 100
+                          : k < LOAD_ACCELERATION ? 1000
+                          : k < LOAD_VELOCITY + 3 ? 10
+                                                  : 30;
+            rows[r * LOAD_WIDTH + k] =
+                size * (k < LOAD_VELOCITY ? sin(r + k + 3e3 * t) : cos(r * k + 2e3 * (from + to)));
         }
 }
 
 /* Cells and options that need just the features this test was compiled with. */
-static struct lattice_cells *make(struct lattice_options *o, struct link_material material[2], double alpha[2], struct link_strength strength[4])
+static struct lattice_cells *make(struct lattice_options *o, struct link_material material[2],
+    double alpha[2], struct link_strength strength[4])
 {
     const int size[3] = {37, 7, 5};
     int n_material = WITH_KINDS ? 2 : 1;
-    material[0] = (struct link_material){1000, 2e7, WITH_VOLUME ? 0.3 : 0, WITH_LINK_DAMPING ? 2e-5 : 0};
-    material[1] = (struct link_material){700, 1e7, WITH_SHEAR_APART ? 0.1 : WITH_VOLUME ? 0.3 : 0, 0};
+    material[0] =
+        (struct link_material){1000, 2e7, WITH_VOLUME ? 0.3 : 0, WITH_LINK_DAMPING ? 2e-5 : 0};
+    material[1] = (struct link_material){700, 1e7,
+        WITH_SHEAR_APART ? 0.1
+        : WITH_VOLUME    ? 0.3
+                         : 0,
+        0};
     alpha[0] = 20;
     alpha[1] = 50;
     o->dt = dt;
@@ -41,10 +52,12 @@ static struct lattice_cells *make(struct lattice_options *o, struct link_materia
     o->alpha = WITH_MASS_DAMPING ? alpha : NULL;
     o->n_row = WITH_LOADS ? 5 : 1;
     o->rows_at = rows_at;
-    for (int k = 0; k < 4; k++) strength[k] = (struct link_strength){(4 + 2 * k) * 1e5, (10 - 2 * k) * 1e5, k % 3};
+    for (int k = 0; k < 4; k++)
+        strength[k] = (struct link_strength){(4 + 2 * k) * 1e5, (10 - 2 * k) * 1e5, k % 3};
     o->strength = WITH_BREAK ? strength : NULL;
     for (int a = 0; a < 3; a++) o->gravity[a] = WITH_GRAVITY ? gravity[a] : 0;
-    struct lattice_cells *c = bodies_create(WITH_KINDS ? 2 : 1, size, 0.1, n_material, bodies_mixed);
+    struct lattice_cells *c =
+        bodies_create(WITH_KINDS ? 2 : 1, size, 0.1, n_material, bodies_mixed);
     for (int64_t i = 0; i < c->n; i++) {
         if (!WITH_FIX) c->bits[i] &= 63;
         if (!WITH_LOADS) c->row[i] = 0;
@@ -55,9 +68,12 @@ static struct lattice_cells *make(struct lattice_options *o, struct link_materia
 
 static void check_features(const struct lattice_features *f)
 {
-    assert_true(f->turn == WITH_TURN && f->volume == WITH_VOLUME && f->shear_apart == WITH_SHEAR_APART && f->twist_apart == WITH_TWIST_APART);
-    assert_true(f->link_damping == WITH_LINK_DAMPING && f->mass_damping == WITH_MASS_DAMPING && f->fix == WITH_FIX && f->loads == WITH_LOADS);
-    assert_true(f->gravity == WITH_GRAVITY && f->kinds == WITH_KINDS && f->rk == WITH_RK && f->energy == WITH_ENERGY && f->breakage == WITH_BREAK);
+    assert_true(f->turn == WITH_TURN && f->volume == WITH_VOLUME &&
+                f->shear_apart == WITH_SHEAR_APART && f->twist_apart == WITH_TWIST_APART);
+    assert_true(f->link_damping == WITH_LINK_DAMPING && f->mass_damping == WITH_MASS_DAMPING &&
+                f->fix == WITH_FIX && f->loads == WITH_LOADS);
+    assert_true(f->gravity == WITH_GRAVITY && f->kinds == WITH_KINDS && f->rk == WITH_RK &&
+                f->energy == WITH_ENERGY && f->breakage == WITH_BREAK);
 }
 
 static void same(const char *what, int64_t i, const double *device, double x, double y, double z)
@@ -65,14 +81,15 @@ static void same(const char *what, int64_t i, const double *device, double x, do
     const double host[3] = {x, y, z};
     for (int a = 0; a < 3; a++)
         if (memcmp(&device[a], &host[a], sizeof(double)))
-            fail_msg("%s[%d] of cell %lld: device %a, host %a", what, a, (long long)i, device[a], host[a]);
+            fail_msg("%s[%d] of cell %lld: device %a, host %a", what, a, (long long)i, device[a],
+                host[a]);
 }
 
 static void compare(const struct lattice *l, const struct link_cell *host)
 {
     size_t n = (size_t)l->n_global;
-    struct lattice_motion m = {fail_alloc(n * sizeof *m.u), fail_alloc(n * sizeof *m.theta), fail_alloc(n * sizeof *m.q), fail_alloc(n * sizeof *m.v),
-        fail_alloc(n * sizeof *m.w)};
+    struct lattice_motion m = {fail_alloc(n * sizeof *m.u), fail_alloc(n * sizeof *m.theta),
+        fail_alloc(n * sizeof *m.q), fail_alloc(n * sizeof *m.v), fail_alloc(n * sizeof *m.w)};
     lattice_read(l, &m);
     assert_int_equal(l->layout->n_owned, l->n_global);
     for (int64_t i = 0; i < l->n_global; i++) {
@@ -81,9 +98,12 @@ static void compare(const struct lattice *l, const struct link_cell *host)
         same("u", i, m.u[i], (double)c->u.x, (double)c->u.y, (double)c->u.z);
         same("v", i, m.v[i], (double)c->v.x, (double)c->v.y, (double)c->v.z);
         same("w", i, m.w[i], (double)c->w.x, (double)c->w.y, (double)c->w.z);
-        if (WITH_TURN) same("q", i, m.q[i] + 1, (double)c->q.v.x, (double)c->q.v.y, (double)c->q.v.z);
+        if (WITH_TURN)
+            same("q", i, m.q[i] + 1, (double)c->q.v.x, (double)c->q.v.y, (double)c->q.v.z);
         if (WITH_TURN) assert_memory_equal(&m.q[i][0], &qw, sizeof qw);
-        if (!WITH_TURN) same("theta", i, m.theta[i], (double)c->theta.x, (double)c->theta.y, (double)c->theta.z);
+        if (!WITH_TURN)
+            same(
+                "theta", i, m.theta[i], (double)c->theta.x, (double)c->theta.y, (double)c->theta.z);
     }
     free(m.u);
     free(m.theta);
@@ -97,7 +117,8 @@ static void compare_stress(struct lattice *l, const struct host *h, struct link_
     size_t n = (size_t)l->n_global;
     struct stress *host = fail_alloc(n * sizeof *host);
     real *von_mises = fail_alloc(n * sizeof *von_mises);
-    double(*device)[9] = fail_alloc(n * sizeof *device), *equivalent = fail_alloc(n * sizeof *equivalent);
+    double(*device)[9] = fail_alloc(n * sizeof *device),
+    *equivalent = fail_alloc(n * sizeof *equivalent);
     for (int form = 0; form < 2; form++) {
         struct lattice_stress *s = lattice_stress_create(l, form == 1);
         lattice_stress_run(s, device, equivalent);
@@ -109,7 +130,8 @@ static void compare_stress(struct lattice *l, const struct host *h, struct link_
             same("stress x", i, device[i], (double)c->xx, (double)c->xy, (double)c->zx);
             same("stress y", i, device[i] + 3, (double)c->xy, (double)c->yy, (double)c->yz);
             same("stress z", i, device[i] + 6, (double)c->zx, (double)c->yz, (double)c->zz);
-            if (memcmp(&equivalent[i], &mises, sizeof mises)) fail_msg("von Mises of cell %lld: %a, %a", (long long)i, equivalent[i], mises);
+            if (memcmp(&equivalent[i], &mises, sizeof mises))
+                fail_msg("von Mises of cell %lld: %a, %a", (long long)i, equivalent[i], mises);
         }
     }
     free(host);
@@ -122,7 +144,8 @@ static void compare_stress(struct lattice *l, const struct host *h, struct link_
 static void compare_links(const struct lattice *l, const struct host *h, int step)
 {
     static int64_t before;
-    int32_t *links = fail_alloc((size_t)h->n * sizeof *links), *fate = fail_alloc((size_t)h->n * sizeof *fate);
+    int32_t *links = fail_alloc((size_t)h->n * sizeof *links),
+            *fate = fail_alloc((size_t)h->n * sizeof *fate);
     int64_t count[LATTICE_BREAK_MODES], counted[LATTICE_BREAK_MODES] = {0}, all = 0, left = 0;
     lattice_break_read(l->breakage, links, fate);
     lattice_break_count(l->breakage, count);
@@ -137,8 +160,9 @@ static void compare_links(const struct lattice *l, const struct host *h, int ste
         assert_int_equal(count[mode], counted[mode]);
         all += count[mode];
     }
-    printf("step %d: broken by tension %lld, shear %lld, bending %lld, twist %lld, left %lld\n", step, (long long)count[0], (long long)count[1],
-        (long long)count[2], (long long)count[3], (long long)left / 2);
+    printf("step %d: broken by tension %lld, shear %lld, bending %lld, twist %lld, left %lld\n",
+        step, (long long)count[0], (long long)count[1], (long long)count[2], (long long)count[3],
+        (long long)left / 2);
     assert_true(all > (step == 3 ? 0 : before) && left > 0);
     before = all;
     free(links);
@@ -158,7 +182,8 @@ static void compare_ledger(const struct lattice *l, const struct host *h)
     for (int k = 0; k < LATTICE_LEDGER; k++) free(plane[k]);
 }
 
-/* Observed at steps 0, 3 and 7; between them no stress is asked for, after step 3 it must not matter that it was. */
+/* Observed at steps 0, 3 and 7; between them no stress is asked for, after step 3 it must not
+ * matter that it was. */
 static void run(enum lattice_scheme scheme, bool one_lane, int axis, int length)
 {
     struct link_material material[2];
@@ -167,7 +192,8 @@ static void run(enum lattice_scheme scheme, bool one_lane, int axis, int length)
     struct link_strength strength[4];
     struct lattice_cells *cells = make(&o, material, alpha, strength);
     struct device *dev = device_open(comm, NULL, false, false);
-    if ((!POSITION_IS_FLOAT && !dev->fp64) || (REAL_IS_FLOAT && !dev->fp32_correct_divide)) exit(77);
+    if ((!POSITION_IS_FLOAT && !dev->fp64) || (REAL_IS_FLOAT && !dev->fp32_correct_divide))
+        exit(77);
     dev->one_lane = one_lane;
     struct lattice *l = lattice_create(dev, comm, cells, &o);
     struct host *h = host_create(cells, &o);
@@ -226,13 +252,15 @@ static void rkn4(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest split[] = {cmocka_unit_test(leapfrog), cmocka_unit_test(pefrl), cmocka_unit_test(vefrl)};
+    const struct CMUnitTest split[] = {
+        cmocka_unit_test(leapfrog), cmocka_unit_test(pefrl), cmocka_unit_test(vefrl)};
     const struct CMUnitTest rk[] = {cmocka_unit_test(rk4), cmocka_unit_test(rkn4)};
     (void)split;
     (void)rk;
     (void)leapfrog;
     comm = comm_create(NULL, NULL);
-    int failed = WITH_RK ? cmocka_run_group_tests(rk, NULL, NULL) : cmocka_run_group_tests(split, NULL, NULL);
+    int failed = WITH_RK ? cmocka_run_group_tests(rk, NULL, NULL)
+                         : cmocka_run_group_tests(split, NULL, NULL);
     comm_free(comm);
     return failed;
 }

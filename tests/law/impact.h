@@ -1,4 +1,5 @@
-/* Two spheres that fly at each other, meet obliquely, and part. The usual test of the laws: everything happens in it once. */
+/* Two spheres that fly at each other, meet obliquely, and part. The usual test of the laws:
+ * everything happens in it once. */
 #ifndef DEMOCLES_IMPACT_H
 #define DEMOCLES_IMPACT_H
 
@@ -26,7 +27,8 @@ struct impact {
 /* Contact time of the elastic impact [s]. */
 double impact_time(const struct impact *c);
 
-/* n: steps per contact time. phase in [0, 1): the same flight, seen at times shifted by phase dt. */
+/* n: steps per contact time. phase in [0, 1): the same flight, seen at times shifted by phase
+ * dt. */
 void impact_start(struct two_body *s, const struct impact *c, int n, double phase);
 
 /* To the end; returns the number of steps. */

@@ -12,17 +12,18 @@
 #include <cmocka.h>
 
 /* value within limit of expected. */
-#define assert_near(value, expected, limit)                                                                                                          \
-    do {                                                                                                                                             \
-        double value_ = (value), expected_ = (expected), limit_ = (limit);                                                                           \
-        if (!(fabs(value_ - expected_) <= limit_))                                                                                                   \
-            fail_msg("%s is %.9g, not %.9g within %.3g (off by %.3g)", #value, value_, expected_, limit_, value_ - expected_);                       \
+#define assert_near(value, expected, limit)                                                        \
+    do {                                                                                           \
+        double value_ = (value), expected_ = (expected), limit_ = (limit);                         \
+        if (!(fabs(value_ - expected_) <= limit_))                                                 \
+            fail_msg("%s is %.9g, not %.9g within %.3g (off by %.3g)", #value, value_, expected_,  \
+                limit_, value_ - expected_);                                                       \
     } while (0)
 
-#define assert_below(value, limit)                                                                                                                   \
-    do {                                                                                                                                             \
-        double value_ = (value), limit_ = (limit);                                                                                                   \
-        if (!(value_ < limit_)) fail_msg("%s is %.9g, not below %.9g", #value, value_, limit_);                                                      \
+#define assert_below(value, limit)                                                                 \
+    do {                                                                                           \
+        double value_ = (value), limit_ = (limit);                                                 \
+        if (!(value_ < limit_)) fail_msg("%s is %.9g, not below %.9g", #value, value_, limit_);    \
     } while (0)
 
 /* Order of convergence from two errors at n_1 and n_2 steps. */

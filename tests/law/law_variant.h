@@ -1,4 +1,5 @@
-/* The same law, compiled with different features: law_variant.c is built once for each, with its own name. */
+/* The same law, compiled with different features: law_variant.c is built once for each, with its
+ * own name. */
 #ifndef DEMOCLES_LAW_VARIANT_H
 #define DEMOCLES_LAW_VARIANT_H
 

@@ -8,10 +8,13 @@ static const double pi = 3.14159265358979;
 static int sticks(const struct contact_material *c, double v, double *leaving)
 {
     struct two_body s = {.dt = (real)(pi * sqrt(IMPACT_M / 2 / IMPACT_K) / 400)};
-    s.b[0] = two_body_sphere((real)IMPACT_M, (real)IMPACT_R, p3(0, 0, 0), v3((real)(v / 2), 0, 0), v3(0, 0, 0));
-    s.b[1] = two_body_sphere((real)IMPACT_M, (real)IMPACT_R, p3((preal)(2 * IMPACT_R) + (preal)2e-6, 0, 0), v3((real)(-v / 2), 0, 0), v3(0, 0, 0));
+    s.b[0] = two_body_sphere(
+        (real)IMPACT_M, (real)IMPACT_R, p3(0, 0, 0), v3((real)(v / 2), 0, 0), v3(0, 0, 0));
+    s.b[1] = two_body_sphere((real)IMPACT_M, (real)IMPACT_R,
+        p3((preal)(2 * IMPACT_R) + (preal)2e-6, 0, 0), v3((real)(-v / 2), 0, 0), v3(0, 0, 0));
     two_body_set(&s, *c);
-    for (int k = 0; k < 1600; k++) two_body_step(&s); /* break or not: at 3/4 of a period, 600 steps; with damping somewhat later */
+    /* break or not: at 3/4 of a period, 600 steps; with damping somewhat later */
+    for (int k = 0; k < 1600; k++) two_body_step(&s);
     *leaving = (double)(s.b[1].v.x - s.b[0].v.x);
     return s.h.state != 0;
 }
@@ -67,14 +70,17 @@ static void leaving_speed(void **state)
     (void)state;
     c.f_b = (real)f_b;
     assert_false(sticks(&c, v, &leaving));
-    assert_near(leaving / sqrt(v * v - f_b * f_b / (IMPACT_K * m)), 1, 1e-2); /* the break is seen at a whole step */
+    /* the break is seen at a whole step */
+    assert_near(leaving / sqrt(v * v - f_b * f_b / (IMPACT_K * m)), 1, 1e-2);
 }
 
-/* Hertz pulls as it pushes: the bond of a central impact gives way where (2/5) K d^(5/2) = m* v^2/2 reaches F_b = K d^(3/2). */
+/* Hertz pulls as it pushes: the bond of a central impact gives way where (2/5) K d^(5/2) = m* v^2/2
+ * reaches F_b = K d^(3/2). */
 static void threshold_hertz(void **state)
 {
     struct contact_material c = contact_material_hertz((real)IMPACT_E, 0, 0, 0, 0);
-    double f_b = 0.2, k = 4.0 / 3 * IMPACT_E * sqrt(IMPACT_R / 2), depth = pow(f_b / k, 2.0 / 3), leaving;
+    double f_b = 0.2, k = 4.0 / 3 * IMPACT_E * sqrt(IMPACT_R / 2), depth = pow(f_b / k, 2.0 / 3),
+           leaving;
     double exact = sqrt(0.8 * k * pow(depth, 2.5) / (IMPACT_M / 2));
     (void)state;
     c.f_b = (real)f_b;
@@ -86,10 +92,12 @@ static void threshold_hertz(void **state)
 static struct contact_result at(double delta, double f_b, double mu, struct contact_history *h)
 {
     struct contact_material c = contact_material_linear((real)IMPACT_K, 0, (real)0.8, 0);
-    struct contact_pair sizes = contact_pair_of((real)(1 / IMPACT_M), (real)(1 / IMPACT_M), (real)IMPACT_R, (real)IMPACT_R);
+    struct contact_pair sizes =
+        contact_pair_of((real)(1 / IMPACT_M), (real)(1 / IMPACT_M), (real)IMPACT_R, (real)IMPACT_R);
     vec3 zero = v3(0, 0, 0);
     pvec3 D = p3((preal)(2 * IMPACT_R - delta), 0, 0);
-    struct contact_kinematics k = contact_kinematics_pair(D, zero, zero, zero, zero, (real)IMPACT_R, (real)IMPACT_R, (real)1e-6);
+    struct contact_kinematics k = contact_kinematics_pair(
+        D, zero, zero, zero, zero, (real)IMPACT_R, (real)IMPACT_R, (real)1e-6);
     c.f_b = (real)f_b;
     c.mu = (real)mu;
     return contact_law(k, contact_parameters_of(c, sizes, (real)1e-6), (real)1e-6, h);
@@ -103,7 +111,8 @@ static void forms_at_touch_only(void **state)
     assert_int_equal(h.state, 0);
     at(1e-6, 0.2, 0, &h);
     assert_int_equal(h.state, CONTACT_TOUCHING | CONTACT_BONDED);
-    assert_near((double)at(-1e-6, 0.2, 0, &h).force.x, 1e-6 * IMPACT_K, 1e-9); /* i is pulled towards j */
+    /* i is pulled towards j */
+    assert_near((double)at(-1e-6, 0.2, 0, &h).force.x, 1e-6 * IMPACT_K, 1e-9);
     assert_int_equal(h.state, CONTACT_BONDED);
 }
 

@@ -1,10 +1,12 @@
-/* The ledger closes: kinetic + elastic energy + losses = what was there at first, to second order, in each kind of impact. */
+/* The ledger closes: kinetic + elastic energy + losses = what was there at first, to second order,
+ * in each kind of impact. */
 #include "impact.h"
 #include "law_test.h"
 
 #define PHASES 10
 
-/* Worst relative gap at the end over the phase; losses of the last run in parts of the first energy. */
+/* Worst relative gap at the end over the phase; losses of the last run in parts of the first
+ * energy. */
 static double gap_of(const struct impact *c, int n, double part[5])
 {
     double worst = 0;
@@ -22,10 +24,12 @@ static double gap_of(const struct impact *c, int n, double part[5])
     return worst;
 }
 
-/* limit: of the gap at 100 steps per contact, where counting at the end of the step has some 2e-2. */
+/* limit: of the gap at 100 steps per contact, where counting at the end of the step has some
+ * 2e-2. */
 static void check(const struct impact *c, double limit, const double least[5])
 {
-    double part[5], coarse = gap_of(c, 50, part), middle = gap_of(c, 100, part), fine = gap_of(c, 800, part);
+    double part[5], coarse = gap_of(c, 50, part), middle = gap_of(c, 100, part),
+                    fine = gap_of(c, 800, part);
     assert_below(middle, limit);
     assert_true(law_order(coarse, 50, fine, 800) > 1.5);
     for (int i = 0; i < 5; i++) {
@@ -39,7 +43,8 @@ static void dashpot(void **state)
     static const double least[5] = {0.1, 0, 0, 0, 0};
     (void)state;
     for (int k = 0; k < 4; k++) {
-        struct impact c = {.hertz = k & 1, .no_attraction = k >> 1, .z_n = 0.2, .slant = 0.3, .spin = 0.3};
+        struct impact c = {
+            .hertz = k & 1, .no_attraction = k >> 1, .z_n = 0.2, .slant = 0.3, .spin = 0.3};
         check(&c, 3e-4, least);
     }
 }
@@ -69,7 +74,14 @@ static void breaking_bond(void **state)
     static const double least[5] = {0.1, 1e-3, 1e-4, 0, 0.02};
     (void)state;
     for (int k = 0; k < 2; k++) {
-        struct impact c = {.hertz = k, .z_n = 0.05, .z_t = 0.1, .mu = 0.3, .slant = 0.3, .spin = 0.3, .f_b = 0.5, .duration = 3};
+        struct impact c = {.hertz = k,
+            .z_n = 0.05,
+            .z_t = 0.1,
+            .mu = 0.3,
+            .slant = 0.3,
+            .spin = 0.3,
+            .f_b = 0.5,
+            .duration = 3};
         check(&c, 3e-4, least);
     }
 }
@@ -81,7 +93,8 @@ static void breaking_bond_costs_its_energy(void **state)
     struct two_body s;
     (void)state;
     impact_run(&s, &c, 400, 0);
-    assert_near(s.lost[4] / (0.25 / (2 * IMPACT_K)), 1, 5e-2); /* the break is seen at a whole step; the ledger counts where it was */
+    /* the break is seen at a whole step; the ledger counts where it was */
+    assert_near(s.lost[4] / (0.25 / (2 * IMPACT_K)), 1, 5e-2);
 }
 
 static void rolling(void **state)
@@ -89,8 +102,15 @@ static void rolling(void **state)
     static const double least[5] = {0.1, 1e-3, 1e-3, 5e-3, 0};
     (void)state;
     for (int k = 0; k < 4; k++) {
-        struct impact c = {
-            .hertz = k & 1, .z_n = 0.05, .z_t = 0.1, .mu = 0.3, .slant = 0.3, .spin = 0.3, .mu_r = 0.1, .k_r = k >> 1 ? 2.25 : 0, .eta_r = 0.3};
+        struct impact c = {.hertz = k & 1,
+            .z_n = 0.05,
+            .z_t = 0.1,
+            .mu = 0.3,
+            .slant = 0.3,
+            .spin = 0.3,
+            .mu_r = 0.1,
+            .k_r = k >> 1 ? 2.25 : 0,
+            .eta_r = 0.3};
         check(&c, 3e-4, least);
     }
 }
@@ -106,7 +126,9 @@ static void rest_loses_nothing(void **state)
     (void)state;
     c.mu = 0.5;
     p = contact_parameters_of(c, contact_pair_of(500, 500, 5e-3, 5e-3), 1e-6);
-    x = contact_law(contact_kinematics_pair(p3(0.99999e-2, 0, 0), zero, zero, zero, zero, 5e-3, 5e-3, 1e-6), p, 1e-6, &h);
+    x = contact_law(
+        contact_kinematics_pair(p3(0.99999e-2, 0, 0), zero, zero, zero, zero, 5e-3, 5e-3, 1e-6), p,
+        1e-6, &h);
     assert_true(x.loss_n == 0 && x.loss_t == 0 && x.loss_s == 0 && x.loss_r == 0 && x.loss_b == 0);
     assert_true(x.elastic > 0);
 }

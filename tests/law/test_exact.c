@@ -33,8 +33,9 @@ static struct variant_input any_pair(struct features f)
 {
     struct variant_input in;
     double r_i = 2e-3 * (2 + any()), r_j = 2e-3 * (2 + any()), z = 0.3 * (1 + any());
-    struct contact_material c = f.hertz ? contact_material_hertz((real)1e7, (real)2e6, (real)z, -1, f.damped ? (real)z : 0)
-                                        : contact_material_linear((real)1e4, (real)z, (real)0.8, f.damped ? (real)z : 0);
+    struct contact_material c =
+        f.hertz ? contact_material_hertz((real)1e7, (real)2e6, (real)z, -1, f.damped ? (real)z : 0)
+                : contact_material_linear((real)1e4, (real)z, (real)0.8, f.damped ? (real)z : 0);
     vec3 x = any3(1);
     double wish = (r_i + r_j - 2e-5 * any()) / sqrt((double)v3_dot(x, x));
     vec3 n;
@@ -43,16 +44,21 @@ static struct variant_input any_pair(struct features f)
     in.r_i = (real)r_i;
     in.r_j = (real)r_j;
     in.dt = (real)1e-5;
-    in.D = p3((preal)(wish * (double)x.x), (preal)(wish * (double)x.y), (preal)(wish * (double)x.z));
+    in.D =
+        p3((preal)(wish * (double)x.x), (preal)(wish * (double)x.y), (preal)(wish * (double)x.z));
     in.v_i = any3(1);
     in.v_j = any3(1);
     in.w_i = any3(100);
     in.w_j = any3(100);
     c.mu = f.friction ? (real)(0.3 * (1 + any())) : 0;
     c.f_b = f.bond ? (real)0.1 : 0;
-    if (f.cdt || f.epsd) c = contact_material_rolling(c, (real)0.1, f.epsd ? (real)2.25 : 0, (real)0.2);
+    if (f.cdt || f.epsd)
+        c = contact_material_rolling(c, (real)0.1, f.epsd ? (real)2.25 : 0, (real)0.2);
     c.law |= f.no_attraction ? CONTACT_NO_ATTRACTION : 0;
-    in.p = contact_parameters_of(c, contact_pair_of((real)(1e-6 / (r_i * r_i * r_i)), (real)(1e-6 / (r_j * r_j * r_j)), in.r_i, in.r_j), in.dt);
+    in.p = contact_parameters_of(c,
+        contact_pair_of(
+            (real)(1e-6 / (r_i * r_i * r_i)), (real)(1e-6 / (r_j * r_j * r_j)), in.r_i, in.r_j),
+        in.dt);
     n = v3_scale(1 / r_sqrt(v3_dot(x, x)), x);
     if (any() > -0.5) {
         in.h.state = CONTACT_TOUCHING | (f.bond ? CONTACT_BONDED : 0);
@@ -66,7 +72,8 @@ static struct variant_input any_pair(struct features f)
 static void assert_same(vec3 a, vec3 b)
 {
     if (!(a.x == b.x && a.y == b.y && a.z == b.z))
-        fail_msg("(%a, %a, %a) is not (%a, %a, %a)", (double)a.x, (double)a.y, (double)a.z, (double)b.x, (double)b.y, (double)b.z);
+        fail_msg("(%a, %a, %a) is not (%a, %a, %a)", (double)a.x, (double)a.y, (double)a.z,
+            (double)b.x, (double)b.y, (double)b.z);
 }
 
 static void assert_same_result(struct variant_output a, struct variant_output b)
@@ -78,7 +85,8 @@ static void assert_same_result(struct variant_output a, struct variant_output b)
     assert_same(a.h.theta, b.h.theta);
 }
 
-/* The bare variant against the one with every feature, on pairs that use only what the bare one has. */
+/* The bare variant against the one with every feature, on pairs that use only what the bare one
+ * has. */
 static void check_variant(variant_law *bare, struct features f)
 {
     int pushed = 0;
@@ -135,7 +143,8 @@ static void swapped(struct features f)
         assert_same(a.h.xi, v3_neg(b.h.xi));
         assert_same(a.h.theta, v3_neg(b.h.theta));
         assert_true(a.l_i == b.l_j && a.l_j == b.l_i && a.h.state == b.h.state);
-        assert_true(a.r.elastic == b.r.elastic && a.r.loss_n == b.r.loss_n && a.r.loss_s == b.r.loss_s);
+        assert_true(
+            a.r.elastic == b.r.elastic && a.r.loss_n == b.r.loss_n && a.r.loss_s == b.r.loss_s);
     }
 }
 
@@ -171,7 +180,8 @@ static void no_contact_no_history(void **state)
     (void)state;
     seed = 4;
     for (int k = 0; k < TRIALS; k++) {
-        struct variant_input in = any_pair((struct features){.friction = 1, .damped = 1, .epsd = 1});
+        struct variant_input in =
+            any_pair((struct features){.friction = 1, .damped = 1, .epsd = 1});
         struct variant_output a = variant_all(&in);
         if (a.h.state) continue;
         assert_memory_equal(&a.h.xi, &none.xi, sizeof none.xi);
@@ -187,7 +197,8 @@ static void apart(void **state)
     (void)state;
     seed = 5;
     for (int k = 0; k < TRIALS; k++) {
-        struct variant_input in = any_pair((struct features){.hertz = k & 1, .friction = 1, .damped = 1, .epsd = 1});
+        struct variant_input in =
+            any_pair((struct features){.hertz = k & 1, .friction = 1, .damped = 1, .epsd = 1});
         struct variant_output a;
         in.h.state = 0;
         in.h.xi = in.h.theta = v3(0, 0, 0);
@@ -200,7 +211,8 @@ static void apart(void **state)
     }
 }
 
-/* Coincident and nearly coincident centres: a fixed direction, the force of the whole overlap, nothing infinite. */
+/* Coincident and nearly coincident centres: a fixed direction, the force of the whole overlap,
+ * nothing infinite. */
 static void coincident_centres(void **state)
 {
     static const double apart_by[] = {0, 1e-30, 1e-15, 1e-9, 1e-6};
@@ -217,13 +229,17 @@ static void coincident_centres(void **state)
         a = variant_all(&in);
         force = (double)in.r_i + (double)in.r_j - d;
         force = (double)in.p.k_n * force * (f.hertz ? sqrt(force) : 1);
-        assert_near((double)a.r.force.x / -force, f.hertz ? (double)a.r.force.x / -force : (double)in.p.damp_n, 1e-6);
-        assert_true(a.r.force.x < 0 && a.r.force.y == 0 && a.r.force.z == 0 && isfinite((double)a.r.force.x));
+        assert_near((double)a.r.force.x / -force,
+            f.hertz ? (double)a.r.force.x / -force : (double)in.p.damp_n, 1e-6);
+        assert_true(a.r.force.x < 0 && a.r.force.y == 0 && a.r.force.z == 0 &&
+                    isfinite((double)a.r.force.x));
         in = any_pair(f); /* and moving any way */
         in.D = p3(0, (preal)d, 0);
         a = variant_all(&in);
-        assert_true(isfinite((double)(a.r.force.x + a.r.force.y + a.r.force.z)) && isfinite((double)(a.h.xi.x + a.h.xi.y + a.h.xi.z)));
-        assert_true(isfinite((double)(a.r.couple.x + a.r.moment.y + a.r.elastic + a.r.loss_n + a.r.loss_s + a.r.loss_t)));
+        assert_true(isfinite((double)(a.r.force.x + a.r.force.y + a.r.force.z)) &&
+                    isfinite((double)(a.h.xi.x + a.h.xi.y + a.h.xi.z)));
+        assert_true(isfinite((double)(a.r.couple.x + a.r.moment.y + a.r.elastic + a.r.loss_n +
+                                      a.r.loss_s + a.r.loss_t)));
     }
 }
 

@@ -1,4 +1,5 @@
-/* Hertz impact against closed forms: Chung and Ooi 2011 (Granular Matter 13, 643), tests 1 to 3, elastic. The limit is 0.1 %. */
+/* Hertz impact against closed forms: Chung and Ooi 2011 (Granular Matter 13, 643), tests 1 to 3,
+ * elastic. The limit is 0.1 %. */
 #include <string.h>
 
 #include "law_test.h"
@@ -32,47 +33,54 @@ static void check(const struct bench *c)
     assert_near(depth / c->depth, 1, 1e-3);
     assert_near(force / c->force, 1, 1e-3);
     assert_near(time / c->time, 1, 2e-3); /* counted in whole steps */
-    assert_near((s.b[0].v.z - (c->plane ? 0 : s.b[1].v.z)) / (c->plane ? c->speed : 2 * c->speed), 1, 1e-6);
+    assert_near(
+        (s.b[0].v.z - (c->plane ? 0 : s.b[1].v.z)) / (c->plane ? c->speed : 2 * c->speed), 1, 1e-6);
 }
 
 static void glass(void **state)
 {
-    static const struct bench c = {"glass", 0, 10e-3, 10, 4.8e10, 0.20, 2800, 274.113e-6, 10696.9, 40.3384e-6};
+    static const struct bench c = {
+        "glass", 0, 10e-3, 10, 4.8e10, 0.20, 2800, 274.113e-6, 10696.9, 40.3384e-6};
     (void)state;
     check(&c);
 }
 
 static void limestone(void **state)
 {
-    static const struct bench c = {"limestone", 0, 10e-3, 10, 2.0e10, 0.25, 2500, 368.304e-6, 7108.2, 54.1996e-6};
+    static const struct bench c = {
+        "limestone", 0, 10e-3, 10, 2.0e10, 0.25, 2500, 368.304e-6, 7108.2, 54.1996e-6};
     (void)state;
     check(&c);
 }
 
 static void aluminium_alloy_on_plane(void **state)
 {
-    static const struct bench c = {"Al alloy", 1, 0.1, 0.2, 7.0e10, 0.30, 2699, 49.717e-6, 11370, 731.64e-6};
+    static const struct bench c = {
+        "Al alloy", 1, 0.1, 0.2, 7.0e10, 0.30, 2699, 49.717e-6, 11370, 731.64e-6};
     (void)state;
     check(&c);
 }
 
 static void magnesium_alloy_on_plane(void **state)
 {
-    static const struct bench c = {"Mg alloy", 1, 0.1, 0.2, 4.0e10, 0.35, 1800, 52.123e-6, 7232.7, 767.05e-6};
+    static const struct bench c = {
+        "Mg alloy", 1, 0.1, 0.2, 4.0e10, 0.35, 1800, 52.123e-6, 7232.7, 767.05e-6};
     (void)state;
     check(&c);
 }
 
 static void aluminium_oxide_on_plane(void **state)
 {
-    static const struct bench c = {"Al oxide", 1, 2.5e-3, 3.9, 3.8e11, 0.23, 4000, 8.0888e-6, 615.35, 6.1044e-6};
+    static const struct bench c = {
+        "Al oxide", 1, 2.5e-3, 3.9, 3.8e11, 0.23, 4000, 8.0888e-6, 615.35, 6.1044e-6};
     (void)state;
     check(&c);
 }
 
 static void cast_iron_on_plane(void **state)
 {
-    static const struct bench c = {"cast iron", 1, 2.5e-3, 3.9, 1.0e11, 0.25, 7000, 17.1887e-6, 506.76, 12.9717e-6};
+    static const struct bench c = {
+        "cast iron", 1, 2.5e-3, 3.9, 1.0e11, 0.25, 7000, 17.1887e-6, 506.76, 12.9717e-6};
     (void)state;
     check(&c);
 }

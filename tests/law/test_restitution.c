@@ -1,4 +1,5 @@
-/* Restitution of a central impact: closed form, order in the time step, and the table of errors of a good scheme. */
+/* Restitution of a central impact: closed form, order in the time step, and the table of errors of
+ * a good scheme. */
 #include "impact.h"
 #include "law_test.h"
 
@@ -20,13 +21,15 @@ static double restitution(const struct impact *c, int n, double phase)
     return (double)v3_dot(v3_sub(s.b[1].v, s.b[0].v), normal) / IMPACT_SPEED;
 }
 
-/* Worst and root mean square error over the phase of the onset and, as contact times are no whole number of steps, over n to 1.2 n steps. */
+/* Worst and root mean square error over the phase of the onset and, as contact times are no whole
+ * number of steps, over n to 1.2 n steps. */
 static double error_of(const struct impact *c, int n, double *rms)
 {
     double worst = 0, sum = 0;
     for (int k = 0; k < 4 * PHASES; k++) {
         int steps = n + n * (k / PHASES) / 15;
-        double e = fabs(restitution(c, steps, (double)(k % PHASES) / PHASES) - exact(c->z_n, c->no_attraction));
+        double e = fabs(
+            restitution(c, steps, (double)(k % PHASES) / PHASES) - exact(c->z_n, c->no_attraction));
         worst = e > worst ? e : worst;
         sum += e * e;
     }
@@ -40,8 +43,9 @@ static struct impact impact_of(int hertz, int no_attraction, double z)
     return c;
 }
 
-/* Linear: second order. Hertz: the dashpot starts like delta^(1/4), and what the onset weight leaves of that is of order 1.25 in the end, but
- * the error is smaller than the linear one at any practical step. */
+/* Linear: second order. Hertz: the dashpot starts like delta^(1/4), and what the onset weight
+ * leaves of that is of order 1.25 in the end, but the error is smaller than the linear one at any
+ * practical step. */
 static void check_damped(int hertz, int no_attraction, double z)
 {
     struct impact c = impact_of(hertz, no_attraction, z);
@@ -87,7 +91,8 @@ static void hertz_without_attraction(void **state)
 /* Worst over the phase, at 20, 50, 100, 400 steps per contact; within a factor 2. */
 static void elastic_errors_are_those_of_leapfrog(void **state)
 {
-    static const double known[2][4] = {{2.5e-4, 1.6e-5, 2.0e-6, 3.2e-8}, {4.3e-4, 4.1e-5, 7.1e-6, 2.1e-7}};
+    static const double known[2][4] = {
+        {2.5e-4, 1.6e-5, 2.0e-6, 3.2e-8}, {4.3e-4, 4.1e-5, 7.1e-6, 2.1e-7}};
     static const int n[4] = {20, 50, 100, 400};
     (void)state;
     for (int hertz = 0; hertz < 2; hertz++) {
@@ -99,7 +104,8 @@ static void elastic_errors_are_those_of_leapfrog(void **state)
     }
 }
 
-/* e = 0.5, linear, with tail: known 2.2e-4, 5.8e-5, 3.8e-6 at 50, 100, 400 steps; within a factor 2. */
+/* e = 0.5, linear, with tail: known 2.2e-4, 5.8e-5, 3.8e-6 at 50, 100, 400 steps; within a factor
+ * 2. */
 static void damped_errors_are_as_known(void **state)
 {
     struct impact c = impact_of(0, 0, 0.2154536);

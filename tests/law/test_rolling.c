@@ -6,8 +6,10 @@
 
 static const double g = 9.81, r = 5e-3, m = 1e-3, k_n = 1e4;
 
-/* At rest on the plane, spring and weight in balance. Gravity may be tilted by `slope` towards x. */
-static struct two_body on_plane(struct contact_material c, double speed, double spin, double slope, double dt)
+/* At rest on the plane, spring and weight in balance. Gravity may be tilted by `slope` towards
+ * x. */
+static struct two_body on_plane(
+    struct contact_material c, double speed, double spin, double slope, double dt)
 {
     struct two_body s;
     double depth = m * g * cos(slope) / k_n;
@@ -82,7 +84,8 @@ static void rolls_down_an_incline(void **state)
 static void cdt_on_an_incline(void **state)
 {
     const double slope = 0.3, mu_r = 0.1, dt = 1e-5;
-    struct two_body s = on_plane(contact_material_rolling(material(0.5, 0.3), mu_r, 0, 0), 0, 0, slope, dt);
+    struct two_body s =
+        on_plane(contact_material_rolling(material(0.5, 0.3), mu_r, 0, 0), 0, 0, slope, dt);
     (void)state;
     for (int k = 0; k < 20000; k++) two_body_step(&s);
     assert_near(s.b[0].v.x / (5.0 / 7 * g * (sin(slope) - mu_r * cos(slope)) * 0.2), 1, 1e-3);
@@ -92,7 +95,8 @@ static void cdt_on_an_incline(void **state)
 static void cdt_stops_a_spin(void **state)
 {
     const double mu_r = 0.05, w_0 = 50, dt = 1e-5, stop = w_0 * r / (2.5 * mu_r * g);
-    struct two_body s = on_plane(contact_material_rolling(material(0, 0), mu_r, 0, 0), 0, w_0, 0, dt);
+    struct two_body s =
+        on_plane(contact_material_rolling(material(0, 0), mu_r, 0, 0), 0, w_0, 0, dt);
     (void)state;
     for (int k = 0; k < (int)(0.5 * stop / dt); k++) two_body_step(&s);
     assert_near(s.b[0].w.y / (0.5 * w_0), 1, 1e-3);
@@ -116,27 +120,37 @@ static void epsd_rests_or_rolls(void **state)
 
     s = on_plane(c, 0, 0, 0.3, dt);
     for (int k = 0; k < 20000; k++) two_body_step(&s);
-    assert_near(s.b[0].v.x / (5.0 / 7 * g * (sin(0.3) - mu_r * cos(0.3)) * 0.2), 1, 2e-2); /* the spring loads first */
+    /* the spring loads first */
+    assert_near(s.b[0].v.x / (5.0 / 7 * g * (sin(0.3) - mu_r * cos(0.3)) * 0.2), 1, 2e-2);
 }
 
-/* M of a pair opposes the relative rolling, whatever the orientation, and does not touch twisting. */
+/* M of a pair opposes the relative rolling, whatever the orientation, and does not touch
+ * twisting. */
 static void moment_opposes_rolling(void **state)
 {
     (void)state;
     for (int epsd = 0; epsd < 2; epsd++) {
-        struct contact_material c = contact_material_rolling(material(0, 0), 0.1, epsd ? 2.25 : 0, 0.3);
-        struct contact_parameters p = contact_parameters_of(c, contact_pair_of(1 / m, 1 / m, r, r), 1e-5);
+        struct contact_material c =
+            contact_material_rolling(material(0, 0), 0.1, epsd ? 2.25 : 0, 0.3);
+        struct contact_parameters p =
+            contact_parameters_of(c, contact_pair_of(1 / m, 1 / m, r, r), 1e-5);
         struct contact_history h = {.state = CONTACT_TOUCHING};
         vec3 zero = v3(0, 0, 0), w_i = v3(7, 3, 0), w_j = v3(7, -1, 0);
-        struct contact_result x = contact_law(contact_kinematics_pair(p3(1.99 * r, 0, 0), zero, zero, w_i, w_j, r, r, 1e-5), p, 1e-5, &h);
+        struct contact_result x = contact_law(
+            contact_kinematics_pair(p3(1.99 * r, 0, 0), zero, zero, w_i, w_j, r, r, 1e-5), p, 1e-5,
+            &h);
         assert_true(x.moment.y < 0);
         assert_near(x.moment.x, 0, 1e-20);
         assert_near(x.moment.z, 0, 1e-20);
         h = (struct contact_history){.state = CONTACT_TOUCHING};
-        x = contact_law(contact_kinematics_pair(p3(1.99 * r, 0, 0), zero, zero, w_j, w_i, r, r, 1e-5), p, 1e-5, &h);
+        x = contact_law(
+            contact_kinematics_pair(p3(1.99 * r, 0, 0), zero, zero, w_j, w_i, r, r, 1e-5), p, 1e-5,
+            &h);
         assert_true(x.moment.y > 0);
         h = (struct contact_history){.state = CONTACT_TOUCHING};
-        x = contact_law(contact_kinematics_pair(p3(1.99 * r, 0, 0), zero, zero, v3(5, 0, 0), zero, r, r, 1e-5), p, 1e-5, &h);
+        x = contact_law(
+            contact_kinematics_pair(p3(1.99 * r, 0, 0), zero, zero, v3(5, 0, 0), zero, r, r, 1e-5),
+            p, 1e-5, &h);
         assert_near(x.moment.x, 0, 0); /* pure twisting */
     }
 }

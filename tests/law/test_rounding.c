@@ -1,4 +1,5 @@
-/* What mixed precision asks of the compiler: a double that goes through float comes back rounded, two side by side too. */
+/* What mixed precision asks of the compiler: a double that goes through float comes back rounded,
+ * two side by side too. */
 #include "law_test.h"
 
 static __attribute__((noinline)) void through_float(double a, double b, double *out)

@@ -1,4 +1,5 @@
-/* The friction spring: it turns with the contact without loss, holds no first-order creep, and cannot be pumped. */
+/* The friction spring: it turns with the contact without loss, holds no first-order creep, and
+ * cannot be pumped. */
 #include <string.h>
 
 #include "law_test.h"
@@ -6,8 +7,9 @@
 
 static const double pi = 3.14159265358979;
 
-/* A contact whose normal turns by `angle` per step, full circle, about the axis z. Returns the part of a unit spring along the motion that is
- * left; the spring starts tilted by 45 degrees against the axis. */
+/* A contact whose normal turns by `angle` per step, full circle, about the axis z. Returns the part
+ * of a unit spring along the motion that is left; the spring starts tilted by 45 degrees against
+ * the axis. */
 static double left_after_turn(int steps)
 {
     vec3 x = v3(0, sqrt(0.5), sqrt(0.5));
@@ -24,19 +26,23 @@ static double left_after_turn(int steps)
     return x.y / sqrt(0.5);
 }
 
-/* cos a + sin a sin(a/2) = 1 - a^4/16 + ... per step of angle a. Projection alone would leave cos a. */
+/* cos a + sin a sin(a/2) = 1 - a^4/16 + ... per step of angle a. Projection alone would leave cos
+ * a. */
 static void turning_keeps_the_length(void **state)
 {
     (void)state;
-    for (int steps = 50; steps <= 800; steps *= 2) assert_near((left_after_turn(steps) - 1) / (-steps * pow(2 * pi / steps, 4) / 16), 1, 1e-2);
+    for (int steps = 50; steps <= 800; steps *= 2)
+        assert_near((left_after_turn(steps) - 1) / (-steps * pow(2 * pi / steps, 4) / 16), 1, 1e-2);
 }
 
-/* A ball (r = m = v = 1, spin s about n) under a central force rolls on a fixed sphere R along a circle of polar angle alpha,
- * cot alpha = l s/(v (1 + 2.5 l^2/r^2)), here 45 degrees. Deviation in degrees after one turn, and drift of s.
- * The usual scheme (normal of the new step with the velocity of the half step) is off by 1.07e-2 degrees at 25 steps, R = 1. */
+/* A ball (r = m = v = 1, spin s about n) under a central force rolls on a fixed sphere R along a
+ * circle of polar angle alpha, cot alpha = l s/(v (1 + 2.5 l^2/r^2)), here 45 degrees. Deviation in
+ * degrees after one turn, and drift of s. The usual scheme (normal of the new step with the
+ * velocity of the half step) is off by 1.07e-2 degrees at 25 steps, R = 1. */
 static double orbit(double big, int steps, double *drift)
 {
-    const double load = 20, k = load / 1e-4, alpha = pi / 4, v = 1, l = 1 - 0.5e-4, d = big + 1 - 1e-4;
+    const double load = 20, k = load / 1e-4, alpha = pi / 4, v = 1, l = 1 - 0.5e-4,
+                 d = big + 1 - 1e-4;
     const double spin = v * (1 + 2.5 * l * l) / l, centre = load + v * v / d;
     vec3 x = v3(sin(alpha), 0, cos(alpha)), n = v3_neg(x), velocity = v3(0, -v, 0);
     vec3 friction = v3_scale(-l * spin / d / (1 + 2.5 * l * l), v3_cross(velocity, n));
@@ -47,7 +53,8 @@ static double orbit(double big, int steps, double *drift)
 
     memset(&s, 0, sizeof s);
     s.dt = pi / sqrt(2.8 * k) / steps; /* part of half the shortest period */
-    *b = two_body_sphere(1, 1, p3_of_v3(v3_scale(d, x)), velocity, v3_add(v3_scale(spin, n), v3_scale(-1 / l, v3_cross(n, velocity))));
+    *b = two_body_sphere(1, 1, p3_of_v3(v3_scale(d, x)), velocity,
+        v3_add(v3_scale(spin, n), v3_scale(-1 / l, v3_cross(n, velocity))));
     s.b[1] = two_body_sphere(1, big, p3(0, 0, 0), v3(0, 0, 0), v3(0, 0, 0));
     s.b[1].mobility = 0;
     c.mu = 1e6;
@@ -83,8 +90,9 @@ static void orbit_on_a_large_sphere(void **state)
     assert_near(orbit(10, 25, &drift), 0, 3.8e-7);
 }
 
-/* A closed cycle of a Hertz-Mindlin contact: shear by x_1 at overlap a, change to overlap b, shear back, change back. Returns the work done by
- * the tangential force on the bodies [J]; positive: out of nothing. */
+/* A closed cycle of a Hertz-Mindlin contact: shear by x_1 at overlap a, change to overlap b, shear
+ * back, change back. Returns the work done by the tangential force on the bodies [J]; positive: out
+ * of nothing. */
 static double cycle(double a, double b, int steps)
 {
     struct contact_material c = contact_material_hertz(1e7, 2e6, 0, -1, 0);
@@ -96,13 +104,20 @@ static double cycle(double a, double b, int steps)
     c.mu = 1e6;
     p = contact_parameters_of(c, contact_pair_of(500, 500, r, r), dt);
     for (int leg = 0; leg < 4; leg++) {
-        double squeeze = leg == 1 ? b - a : leg == 3 ? a - b : 0, slide = leg == 0 ? shear : leg == 2 ? -shear : 0;
+        double squeeze = leg == 1   ? b - a
+                         : leg == 3 ? a - b
+                                    : 0,
+               slide = leg == 0   ? shear
+                       : leg == 2 ? -shear
+                                  : 0;
         for (int k = 0; k < steps; k++) {
             double v_n = squeeze / steps / dt, v_t = slide / steps / dt;
             struct contact_result x;
             delta += squeeze / steps;
             /* a translation: j held, i moves; the distance stays in x, the shear is far below it */
-            x = contact_law(contact_kinematics_pair(p3(2 * r - delta, 0, 0), v3(v_n, v_t, 0), zero, zero, zero, r, r, dt), p, dt, &h);
+            x = contact_law(contact_kinematics_pair(p3(2 * r - delta, 0, 0), v3(v_n, v_t, 0), zero,
+                                zero, zero, r, r, dt),
+                p, dt, &h);
             work += 0.5 * (force + x.force.y) * v_t * dt;
             force = x.force.y;
         }
@@ -113,7 +128,8 @@ static double cycle(double a, double b, int steps)
 /* With F_t = -k_t(delta) xi one of the two directions yields (k_2 - k_1) xi^2/2. */
 static void mindlin_cycle_gives_no_energy(void **state)
 {
-    double scale = 0.5 * 8 * 2e6 * sqrt(2.5e-3 * 2e-5) * 1e-12; /* k_t xi^2/2 at the larger overlap */
+    /* k_t xi^2/2 at the larger overlap */
+    double scale = 0.5 * 8 * 2e6 * sqrt(2.5e-3 * 2e-5) * 1e-12;
     (void)state;
     assert_below(cycle(1e-5, 2e-5, 400), 1e-4 * scale);
     assert_below(cycle(2e-5, 1e-5, 400), 1e-4 * scale);
@@ -126,22 +142,26 @@ static void mindlin_keeps_force_or_displacement(void **state)
 {
     struct contact_material c = contact_material_hertz(1e7, 2e6, 0, -1, 0);
     struct contact_parameters p;
-    const double dt = 1e-6, r = 5e-3, k_1 = 8 * 2e6 * sqrt(2.5e-3 * 1e-5), k_2 = 8 * 2e6 * sqrt(2.5e-3 * 1.1e-5);
+    const double dt = 1e-6, r = 5e-3, k_1 = 8 * 2e6 * sqrt(2.5e-3 * 1e-5),
+                 k_2 = 8 * 2e6 * sqrt(2.5e-3 * 1.1e-5);
     struct contact_history h = {.state = CONTACT_TOUCHING, .xi = {0, 1e-7, 0}};
     struct contact_kinematics k;
     vec3 zero = v3(0, 0, 0);
     (void)state;
     c.mu = 1e6;
     p = contact_parameters_of(c, contact_pair_of(500, 500, r, r), dt);
-    k = contact_kinematics_pair(p3(2 * r - 1.1e-5, 0, 0), v3(1, 0, 0), zero, zero, zero, r, r, dt); /* grew from 1e-5 */
+    /* grew from 1e-5 */
+    k = contact_kinematics_pair(p3(2 * r - 1.1e-5, 0, 0), v3(1, 0, 0), zero, zero, zero, r, r, dt);
     assert_near(contact_law(k, p, dt, &h).force.y / (-k_1 * 1e-7), 1, 1e-6);
     h.xi.y = 1e-7;
-    k = contact_kinematics_pair(p3(2 * r - 1.0e-5, 0, 0), v3(-1, 0, 0), zero, zero, zero, r, r, dt); /* fell from 1.1e-5 */
+    /* fell from 1.1e-5 */
+    k = contact_kinematics_pair(p3(2 * r - 1.0e-5, 0, 0), v3(-1, 0, 0), zero, zero, zero, r, r, dt);
     assert_near(contact_law(k, p, dt, &h).force.y / (-k_1 * 1e-7), 1, 1e-6);
     assert_true(k_2 > k_1);
 }
 
-/* Slip cuts the spring: reversed sliding meets full friction the other way after 2 C/k_t, and the stored energy is C^2/(2 k_t). */
+/* Slip cuts the spring: reversed sliding meets full friction the other way after 2 C/k_t, and the
+ * stored energy is C^2/(2 k_t). */
 static void slip_cuts_the_spring(void **state)
 {
     struct contact_material c = contact_material_linear(1e4, 0, 0.8, 0);
@@ -155,11 +175,14 @@ static void slip_cuts_the_spring(void **state)
     (void)state;
     c.mu = 0.3;
     p = contact_parameters_of(c, contact_pair_of(500, 500, r, r), dt);
-    for (int k = 0; k < 100; k++) x = contact_law(contact_kinematics_pair(D, v3(0, 1, 0), zero, zero, zero, r, r, dt), p, dt, &h);
+    for (int k = 0; k < 100; k++)
+        x = contact_law(
+            contact_kinematics_pair(D, v3(0, 1, 0), zero, zero, zero, r, r, dt), p, dt, &h);
     assert_near(x.force.y / -cap, 1, 1e-9);
     assert_near((x.elastic - 0.5 * 1e4 * delta * delta) / (cap * cap / (2 * 8e3)), 1, 1e-6);
     for (; x.force.y < 0.999 * cap && steps < 100; steps++)
-        x = contact_law(contact_kinematics_pair(D, v3(0, -1, 0), zero, zero, zero, r, r, dt), p, dt, &h);
+        x = contact_law(
+            contact_kinematics_pair(D, v3(0, -1, 0), zero, zero, zero, r, r, dt), p, dt, &h);
     assert_near(steps, 2 * cap / 8e3 / dt, 1);
 }
 

@@ -19,7 +19,8 @@ void two_body_set(struct two_body *s, struct contact_material c)
 {
     const struct body *i = &s->b[0], *j = &s->b[1];
     struct contact_pair sizes =
-        s->plane ? contact_pair_wall((real)1 / i->m, i->r) : contact_pair_of(i->mobility / i->m, j->mobility / j->m, i->r, j->r);
+        s->plane ? contact_pair_wall((real)1 / i->m, i->r)
+                 : contact_pair_of(i->mobility / i->m, j->mobility / j->m, i->r, j->r);
     s->p = contact_parameters_of(c, sizes, s->dt);
     memset(&s->h, 0, sizeof s->h);
     memset(s->lost, 0, sizeof s->lost);
@@ -35,7 +36,8 @@ static void kick_half(struct two_body *s)
     for (int n = 0; n < 2; n++) {
         struct body *b = &s->b[n];
         b->v = kick(b->v, b->force, (real)0.5 * s->dt * b->mobility / b->m);
-        b->w = kick(b->w, b->torque, (real)0.5 * s->dt * b->mobility / ((real)0.4 * b->m * b->r * b->r));
+        b->w = kick(
+            b->w, b->torque, (real)0.5 * s->dt * b->mobility / ((real)0.4 * b->m * b->r * b->r));
     }
 }
 
@@ -45,7 +47,8 @@ static struct contact_kinematics kinematics(const struct two_body *s)
     if (s->plane) {
         vec3 down = v3(0, 0, -1), zero = v3(0, 0, 0);
         real delta = (real)((preal)i->r - i->x.z);
-        return contact_kinematics_wall(down, down, delta, delta + (real)0.5 * s->dt * i->v.z, i->v, zero, i->w, i->r);
+        return contact_kinematics_wall(
+            down, down, delta, delta + (real)0.5 * s->dt * i->v.z, i->v, zero, i->w, i->r);
     }
     return contact_kinematics_pair(p3_sub(j->x, i->x), i->v, j->v, i->w, j->w, i->r, j->r, s->dt);
 }
@@ -77,7 +80,8 @@ double two_body_kinetic(const struct two_body *s)
     for (int n = 0; n < (s->plane ? 1 : 2); n++) {
         const struct body *b = &s->b[n];
         double m = (double)b->m, r = (double)b->r;
-        sum += (double)b->mobility * 0.5 * m * ((double)v3_dot(b->v, b->v) + 0.4 * r * r * (double)v3_dot(b->w, b->w));
+        sum += (double)b->mobility * 0.5 * m *
+               ((double)v3_dot(b->v, b->v) + 0.4 * r * r * (double)v3_dot(b->w, b->w));
     }
     return sum;
 }
@@ -90,6 +94,7 @@ double two_body_lost(const struct two_body *s)
 double two_body_energy(const struct two_body *s)
 {
     double sum = two_body_kinetic(s) + (double)s->r.elastic;
-    for (int n = 0; n < (s->plane ? 1 : 2); n++) sum -= (double)s->b[n].m * (double)p3_dot(s->b[n].x, p3_of_v3(s->gravity));
+    for (int n = 0; n < (s->plane ? 1 : 2); n++)
+        sum -= (double)s->b[n].m * (double)p3_dot(s->b[n].x, p3_of_v3(s->gravity));
     return sum;
 }

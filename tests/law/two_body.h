@@ -1,5 +1,6 @@
-/* Two spheres, or a sphere and a plane, under the contact law: leapfrog in the kick-drift-kick form of the solver, nothing else.
- * What the solver's kernels do with lists and buffers is done here with two structs, so that a wrong number is the law's. */
+/* Two spheres, or a sphere and a plane, under the contact law: leapfrog in the kick-drift-kick form
+ * of the solver, nothing else. What the solver's kernels do with lists and buffers is done here
+ * with two structs, so that a wrong number is the law's. */
 #ifndef DEMOCLES_TWO_BODY_H
 #define DEMOCLES_TWO_BODY_H
 

@@ -8,7 +8,8 @@ static void rotate(double *a, int n, int p, int q)
     double h = a[p * n + q];
     if (fabs(h) < 1e-300) return;
     double theta = (a[q * n + q] - a[p * n + p]) / (2 * h);
-    double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1)), c = 1 / sqrt(t * t + 1), s = t * c;
+    double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1)),
+           c = 1 / sqrt(t * t + 1), s = t * c;
     for (int k = 0; k < n; k++) {
         double x = a[k * n + p], y = a[k * n + q];
         a[k * n + p] = c * x - s * y;

@@ -13,24 +13,26 @@
 
 #include <cmocka.h>
 
-#define assert_near(value, expected, limit)                                                                                                          \
-    do {                                                                                                                                             \
-        double value_ = (double)(value), expected_ = (double)(expected), limit_ = (double)(limit);                                                   \
-        if (!(fabs(value_ - expected_) <= limit_))                                                                                                   \
-            fail_msg("%s is %.9g, not %.9g within %.3g (off by %.3g)", #value, value_, expected_, limit_, value_ - expected_);                       \
+#define assert_near(value, expected, limit)                                                        \
+    do {                                                                                           \
+        double value_ = (double)(value), expected_ = (double)(expected), limit_ = (double)(limit); \
+        if (!(fabs(value_ - expected_) <= limit_))                                                 \
+            fail_msg("%s is %.9g, not %.9g within %.3g (off by %.3g)", #value, value_, expected_,  \
+                limit_, value_ - expected_);                                                       \
     } while (0)
 
 /* value in [low, high] */
-#define assert_between(value, low, high)                                                                                                             \
-    do {                                                                                                                                             \
-        double value_ = (double)(value), low_ = (double)(low), high_ = (double)(high);                                                               \
-        if (!(value_ >= low_ && value_ <= high_)) fail_msg("%s is %.9g, not in %.9g ... %.9g", #value, value_, low_, high_);                         \
+#define assert_between(value, low, high)                                                           \
+    do {                                                                                           \
+        double value_ = (double)(value), low_ = (double)(low), high_ = (double)(high);             \
+        if (!(value_ >= low_ && value_ <= high_))                                                  \
+            fail_msg("%s is %.9g, not in %.9g ... %.9g", #value, value_, low_, high_);             \
     } while (0)
 
-#define assert_below(value, limit)                                                                                                                   \
-    do {                                                                                                                                             \
-        double value_ = (double)(value), limit_ = (double)(limit);                                                                                   \
-        if (!(value_ < limit_)) fail_msg("%s is %.9g, not below %.9g", #value, value_, limit_);                                                      \
+#define assert_below(value, limit)                                                                 \
+    do {                                                                                           \
+        double value_ = (double)(value), limit_ = (double)(limit);                                 \
+        if (!(value_ < limit_)) fail_msg("%s is %.9g, not below %.9g", #value, value_, limit_);    \
     } while (0)
 
 static uint64_t limit_seed = 1;

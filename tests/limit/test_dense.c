@@ -1,4 +1,5 @@
-/* The limit of the densest packing, from the scene alone: known packings, sizes, numbers, impacts; and the advice beside it. */
+/* The limit of the densest packing, from the scene alone: known packings, sizes, numbers, impacts;
+ * and the advice beside it. */
 #include "limit_test.h"
 
 #include <string.h>
@@ -7,13 +8,21 @@
 #include "particle/limit.h"
 
 static struct material mortar = {.name = "mortar", .density = 2200, .young = 1e7, .poisson = 0.2};
-static struct contact linear = {
-    .normal_law = NORMAL_LINEAR, .stiffness = 1e3, .attraction = true, .has_tangential = true, .stiffness_ratio = 0.8, .friction = 0.2};
+static struct contact linear = {.normal_law = NORMAL_LINEAR,
+    .stiffness = 1e3,
+    .attraction = true,
+    .has_tangential = true,
+    .stiffness_ratio = 0.8,
+    .friction = 0.2};
 static struct contact hertz = {.normal_law = NORMAL_HERTZ, .attraction = true};
 
 static struct scene scene_of(struct contact *contact)
 {
-    struct scene s = {.material = &mortar, .n_material = 1, .contact = contact, .n_contact = 1, .time = {.end = 1}};
+    struct scene s = {.material = &mortar,
+        .n_material = 1,
+        .contact = contact,
+        .n_contact = 1,
+        .time = {.end = 1}};
     return s;
 }
 
@@ -57,7 +66,8 @@ static double mass(double r)
     return mortar.density * 4 / 3 * M_PI * r * r * r;
 }
 
-/* Cases A and B: true limits 1.34e-4 and 6.23e-5 s (FCC); the bound with the best share is 0.822 of that, damping takes a little. */
+/* Cases A and B: true limits 1.34e-4 and 6.23e-5 s (FCC); the bound with the best share is 0.822 of
+ * that, damping takes a little. */
 static void equal_spheres(void **state)
 {
     (void)state;
@@ -79,12 +89,14 @@ static void numbers(void **state)
     double w = sqrt(1e3 / mass(2.5e-3));
     assert_true(isinf(dense(&s, 1, 2.5e-3, 2.5e-3, 1)));
     assert_near(dense(&s, 2, 2.5e-3, 2.5e-3, 1) * w, 2 / sqrt(2), 1e-6);
-    assert_near(dense(&s, 3, 2.5e-3, 2.5e-3, 1) * w, 2 / sqrt(4), 1e-6); /* above the true 2/3^(1/2) of a chain of three is nothing */
+    /* above the true 2/3^(1/2) of a chain of three is nothing */
+    assert_near(dense(&s, 3, 2.5e-3, 2.5e-3, 1) * w, 2 / sqrt(4), 1e-6);
     assert_near(dense(&s, 13, 2.5e-3, 2.5e-3, 1) * w, 2 / sqrt(8), 1e-6);
     assert_near(dense(&s, 1000, 2.5e-3, 2.5e-3, 1) * w, 2 / sqrt(8), 1e-6);
 }
 
-/* Small spheres set the limit, and the more of them fit round a large one the lower it is, but not without end. */
+/* Small spheres set the limit, and the more of them fit round a large one the lower it is, but not
+ * without end. */
 static void mixed_sizes(void **state)
 {
     (void)state;
@@ -110,22 +122,30 @@ static void stiff_wall(void **state)
     contact[1].stiffness = 1e6;
     contact[1].has_tangential = false;
     struct wall wall = {.material = 1};
-    struct scene s = {.material = both, .n_material = 2, .contact = contact, .n_contact = 2, .wall = &wall, .n_wall = 1};
+    struct scene s = {.material = both,
+        .n_material = 2,
+        .contact = contact,
+        .n_contact = 2,
+        .wall = &wall,
+        .n_wall = 1};
     double w = sqrt(1e6 / mass(2.5e-3));
     assert_between(dense(&s, 1000, 2.5e-3, 2.5e-3, 1) * w, 1.9, 2);
     assert_near(dense(&s, 1, 2.5e-3, 2.5e-3, 1) * w, 2, 1e-6);
 }
 
-/* Two Hertz spheres that meet at v: K delta^(1/2) 3/2 at the deepest; K = (4/3) E* (r/2)^(1/2), E* = E/(2 (1 - nu^2)). */
+/* Two Hertz spheres that meet at v: K delta^(1/2) 3/2 at the deepest; K = (4/3) E* (r/2)^(1/2), E*
+ * = E/(2 (1 - nu^2)). */
 static void hertz_impact(void **state)
 {
     (void)state;
     struct scene s = scene_of(&hertz);
     double r = 5e-3, v = 0.5, m = mass(r), K = 4.0 / 3 * 1e7 / (2 * (1 - 0.04)) * sqrt(r / 2);
-    double column = pow(0.5 * mortar.density * v * v * 4 * r * r / K, 2.0 / 3), deepest = pow(pow(column, 2.5) + 1.25 * m / 2 * v * v / K, 0.4);
+    double column = pow(0.5 * mortar.density * v * v * 4 * r * r / K, 2.0 / 3),
+           deepest = pow(pow(column, 2.5) + 1.25 * m / 2 * v * v / K, 0.4);
     double expected = 2 / sqrt(2 * 1.5 * K * sqrt(deepest) / m);
     assert_near(dense(&s, 2, r, r, v) / expected, 1, 1e-4);
-    assert_between(dense(&s, 2, r, r, 32 * v) / expected, 0.4, 0.55); /* v^(-1/5) and a little more */
+    /* v^(-1/5) and a little more */
+    assert_between(dense(&s, 2, r, r, 32 * v) / expected, 0.4, 0.55);
     assert_true(isfinite(dense(&s, 2, r, r, 0)));
 }
 
@@ -161,7 +181,8 @@ static int warnings(const struct scene *s, double dt, double speed, const char *
     return n;
 }
 
-/* Case A: contact pi (m/2k)^(1/2) = 8.43e-4 s; bonds of 5 um that hold up to F_b/(k m/2)^(1/2) = 1.86 cm/s are crossed in 2.7e-4 s. */
+/* Case A: contact pi (m/2k)^(1/2) = 8.43e-4 s; bonds of 5 um that hold up to F_b/(k m/2)^(1/2) =
+ * 1.86 cm/s are crossed in 2.7e-4 s. */
 static void advice(void **state)
 {
     (void)state;
@@ -169,16 +190,20 @@ static void advice(void **state)
     bonded.binding_force = 5e-3;
     struct scene s = scene_of(&linear), b = scene_of(&bonded);
     assert_int_equal(warnings(&s, 4.1e-5, 3, NULL), 0);
-    assert_int_equal(warnings(&s, 4.3e-5, 3, "the shortest contact lasts 0.000843 s, 19.6 time steps"), 1);
+    assert_int_equal(
+        warnings(&s, 4.3e-5, 3, "the shortest contact lasts 0.000843 s, 19.6 time steps"), 1);
     assert_int_equal(warnings(&s, 4.1e-5, 7, "of the smallest radius in one time step"), 1);
     assert_int_equal(warnings(&b, 2.6e-5, 3, NULL), 0);
-    assert_int_equal(warnings(&b, 2.8e-5, 3, "bonds reach 5e-06 m (binding force over stiffness); at 0.0186 m/s"), 1);
+    assert_int_equal(warnings(&b, 2.8e-5, 3,
+                         "bonds reach 5e-06 m (binding force over stiffness); at 0.0186 m/s"),
+        1);
     assert_int_equal(warnings(&b, 2.8e-5, 1e-3, NULL), 0); /* nothing is that fast */
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(equal_spheres), cmocka_unit_test(numbers), cmocka_unit_test(mixed_sizes),
-        cmocka_unit_test(stiff_wall), cmocka_unit_test(hertz_impact), cmocka_unit_test(speeds), cmocka_unit_test(advice)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(equal_spheres), cmocka_unit_test(numbers),
+        cmocka_unit_test(mixed_sizes), cmocka_unit_test(stiff_wall), cmocka_unit_test(hertz_impact),
+        cmocka_unit_test(speeds), cmocka_unit_test(advice)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,13 @@
-/* Regular packings, whose true limits are known by formula, and damping: the numbers of the table in the physics notes.
- * Unit stiffness and mass; true = 2/w_max of the undamped lattice. */
+/* Regular packings, whose true limits are known by formula, and damping: the numbers of the table
+ * in the physics notes. Unit stiffness and mass; true = 2/w_max of the undamped lattice. */
 #include "limit_test.h"
 
 #include "kernels/contact/law_limit.h"
 
-static const double dimer[] = {1, 0, 0}, cubic[] = {1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1};
-static const double fcc[] = {1, 1, 0, 1, -1, 0, -1, 1, 0, -1, -1, 0, 1, 0, 1, 1, 0, -1, -1, 0, 1, -1, 0, -1, 0, 1, 1, 0, 1, -1, 0, -1, 1, 0, -1, -1};
+static const double dimer[] = {1, 0, 0},
+                    cubic[] = {1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1};
+static const double fcc[] = {1, 1, 0, 1, -1, 0, -1, 1, 0, -1, -1, 0, 1, 0, 1, 1, 0, -1, -1, 0, 1,
+    -1, 0, -1, 0, 1, 1, 0, 1, -1, 0, -1, 1, 0, -1, -1};
 
 /* Contacts of equal spheres of mass 1 and radius 1 in the directions n [count][3]. */
 static double bound(const double *n, int count, double kappa, double z, double dt, double share)
@@ -15,7 +17,8 @@ static double bound(const double *n, int count, double kappa, double z, double d
     struct limit_sums s = limit_sums_zero();
     struct limit_contact c = limit_contact_of(m, ends, 1e-3, 0, dt);
     for (int k = 0; k < count; k++) {
-        double r = sqrt(n[3 * k] * n[3 * k] + n[3 * k + 1] * n[3 * k + 1] + n[3 * k + 2] * n[3 * k + 2]);
+        double r =
+            sqrt(n[3 * k] * n[3 * k] + n[3 * k + 1] * n[3 * k + 1] + n[3 * k + 2] * n[3 * k + 2]);
         s = limit_sums_add(s, c, ends, v3(n[3 * k] / r, n[3 * k + 1] / r, n[3 * k + 2] / r), share);
     }
     return limit_of_sums(s, LIMIT_NONE);
@@ -43,18 +46,21 @@ static void without_damping(void **state)
 static void shared(void **state)
 {
     (void)state;
-    assert_near(bound(fcc, 12, 2.0 / 7, 0, 0, limit_share(2.0 / 7)) / true_fcc(2.0 / 7), 0.770, 6e-4);
+    assert_near(
+        bound(fcc, 12, 2.0 / 7, 0, 0, limit_share(2.0 / 7)) / true_fcc(2.0 / 7), 0.770, 6e-4);
     assert_near(bound(fcc, 12, 0.8, 0, 0, limit_share(0.8)) / true_fcc(0.8), 0.822, 5e-4);
     assert_near(limit_share(1e9), 1, 1e-6);
     for (double s = 0.3; s < 1.01; s += 0.05) /* none is better than that one */
-        assert_true(bound(fcc, 12, 0.8, 0, 0, s) <= bound(fcc, 12, 0.8, 0, 0, limit_share(0.8)) * (1 + 1e-9));
+        assert_true(bound(fcc, 12, 0.8, 0, 0, s) <=
+                    bound(fcc, 12, 0.8, 0, 0, limit_share(0.8)) * (1 + 1e-9));
 }
 
 /* Lagged dashpots: (1 + z^2)^(1/2) - z, in the bed's top mode 2 z. */
 static void lagged_dashpots(void **state)
 {
     (void)state;
-    static const double z[] = {0.02, 0.1, 0.3, 0.5, 1, 2, 5}, pair[] = {0.980, 0.905, 0.744, 0.618, 0.414, 0.236, 0.099},
+    static const double z[] = {0.02, 0.1, 0.3, 0.5, 1, 2, 5},
+                        pair[] = {0.980, 0.905, 0.744, 0.618, 0.414, 0.236, 0.099},
                         bed[] = {0.961, 0.820, 0.566, 0.414, 0.236, 0.123, 0.050};
     for (int k = 0; k < 7; k++) {
         assert_near(bound(dimer, 1, 0, z[k], 0, 1) / bound(dimer, 1, 0, 0, 0, 1), pair[k], 6e-4);
@@ -74,7 +80,8 @@ static double centred(const double *n, int count, double z)
     return dt;
 }
 
-/* Pair-centred dashpots: a pair loses nothing at any z; FCC obeys h^2 + 3 z h = 1, h = dt (2 k/m)^(1/2). */
+/* Pair-centred dashpots: a pair loses nothing at any z; FCC obeys h^2 + 3 z h = 1, h = dt (2
+ * k/m)^(1/2). */
 static void centred_dashpots(void **state)
 {
     (void)state;
@@ -90,10 +97,13 @@ static void centred_dashpots(void **state)
 static void ends_and_depth(void **state)
 {
     (void)state;
-    struct contact_material hertz = contact_material_hertz(1e6, 1e5, 0, -1, 0), bond = contact_material_linear(100, 0, 0.5, 0);
+    struct contact_material hertz = contact_material_hertz(1e6, 1e5, 0, -1, 0),
+                            bond = contact_material_linear(100, 0, 0.5, 0);
     struct limit_ends ends = {2, 2, 0.01, 0.01}, wall = {2, 0, 0.01, 0};
-    double m_star = 0.25, v = 0.3, K = hertz.k_n * sqrt(0.005), deepest = pow(1.25 * m_star * v * v / K, 0.4);
-    struct limit_contact still = limit_contact_of(hertz, ends, 1e-5, -v, 0), fast = limit_contact_of(hertz, ends, 1e-9, v, 0);
+    double m_star = 0.25, v = 0.3, K = hertz.k_n * sqrt(0.005),
+           deepest = pow(1.25 * m_star * v * v / K, 0.4);
+    struct limit_contact still = limit_contact_of(hertz, ends, 1e-5, -v, 0),
+                         fast = limit_contact_of(hertz, ends, 1e-9, v, 0);
     assert_near(still.k_n / (1.5 * K * sqrt(1e-5)), 1, 1e-5);
     assert_between(fast.k_n / (1.5 * K * sqrt(deepest)), 1, 1 + 2e-4);
     assert_near(limit_contact_of(hertz, wall, 1e-5, 0, 0).k_n / still.k_n, sqrt(2), 1e-5);
@@ -108,7 +118,8 @@ static void ends_and_depth(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(without_damping), cmocka_unit_test(shared), cmocka_unit_test(lagged_dashpots),
-        cmocka_unit_test(centred_dashpots), cmocka_unit_test(ends_and_depth)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(without_damping), cmocka_unit_test(shared),
+        cmocka_unit_test(lagged_dashpots), cmocka_unit_test(centred_dashpots),
+        cmocka_unit_test(ends_and_depth)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* The largest eigenvalue without trigonometry: never below, hardly above, whatever the multiplicity; and the fifth root. */
+/* The largest eigenvalue without trigonometry: never below, hardly above, whatever the
+ * multiplicity; and the fifth root. */
 #include "limit_test.h"
 
 #include "jacobi.h"
@@ -17,15 +18,18 @@ static struct limit_matrix random_matrix(int n, double spread, double scale)
 {
     struct limit_matrix a = limit_matrix_zero();
     for (int k = 0; k < n; k++) {
-        double x = uniform(-1, 1), y = uniform(-1, 1), z = uniform(-1, 1), r = sqrt(x * x + y * y + z * z), f = scale * pow(10, -uniform(0, spread));
-        a = limit_matrix_add(a, (real)f, (real)(k % 3 ? 0 : 0.7 * f), v3((real)(x / r), (real)(y / r), (real)(z / r)));
+        double x = uniform(-1, 1), y = uniform(-1, 1), z = uniform(-1, 1),
+               r = sqrt(x * x + y * y + z * z), f = scale * pow(10, -uniform(0, spread));
+        a = limit_matrix_add(a, (real)f, (real)(k % 3 ? 0 : 0.7 * f),
+            v3((real)(x / r), (real)(y / r), (real)(z / r)));
     }
     return a;
 }
 
 static double truth(struct limit_matrix a)
 {
-    double m[9] = {(double)a.xx, (double)a.xy, (double)a.xz, (double)a.xy, (double)a.yy, (double)a.yz, (double)a.xz, (double)a.yz, (double)a.zz};
+    double m[9] = {(double)a.xx, (double)a.xy, (double)a.xz, (double)a.xy, (double)a.yy,
+        (double)a.yz, (double)a.xz, (double)a.yz, (double)a.zz};
     double smallest, largest;
     jacobi(m, 3, &smallest, &largest);
     return largest;
@@ -45,13 +49,15 @@ static void random_matrices(void **state)
 static void special_matrices(void **state)
 {
     (void)state;
-    const double diagonal[][3] = {{1, 1, 1}, {1, 1, 0}, {1, 0, 0}, {1, 1, 0.5}, {1, 0.999, 0.998}, {3, 2, 1}, {1, 1e-6, 1e-6}};
+    const double diagonal[][3] = {{1, 1, 1}, {1, 1, 0}, {1, 0, 0}, {1, 1, 0.5}, {1, 0.999, 0.998},
+        {3, 2, 1}, {1, 1e-6, 1e-6}};
     for (size_t k = 0; k < sizeof diagonal / sizeof *diagonal; k++) {
         struct limit_matrix a = limit_matrix_zero();
         a.xx = (real)diagonal[k][2];
         a.yy = (real)diagonal[k][0];
         a.zz = (real)diagonal[k][1];
-        assert_between(limit_largest(a, LIMIT_STEPS), diagonal[k][0] * (1 - EPS), diagonal[k][0] * (1 + REST));
+        assert_between(
+            limit_largest(a, LIMIT_STEPS), diagonal[k][0] * (1 - EPS), diagonal[k][0] * (1 + REST));
     }
     assert_true((double)limit_largest(limit_matrix_zero(), LIMIT_STEPS) <= 0);
     assert_true((double)limit_of_sums(limit_sums_zero(), 0) > 0.99e30);
@@ -69,6 +75,7 @@ static void fifth_root(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(random_matrices), cmocka_unit_test(special_matrices), cmocka_unit_test(fifth_root)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(random_matrices),
+        cmocka_unit_test(special_matrices), cmocka_unit_test(fifth_root)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

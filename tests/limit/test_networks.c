@@ -1,4 +1,5 @@
-/* Random networks of spheres and walls: the bound against all eigenvalues, any sizes, stiffnesses and damping. */
+/* Random networks of spheres and walls: the bound against all eigenvalues, any sizes, stiffnesses
+ * and damping. */
 #include "limit_test.h"
 
 #include "jacobi.h"
@@ -23,13 +24,14 @@ struct network {
 
 static struct contact_material random_material(double spread, double z, bool friction, bool rolling)
 {
-    struct contact_material m =
-        contact_material_linear(pow(10, uniform(0, spread)), uniform(0, z), friction ? uniform(0.1, 1) : 0, friction ? uniform(0, z) : 0);
+    struct contact_material m = contact_material_linear(pow(10, uniform(0, spread)), uniform(0, z),
+        friction ? uniform(0.1, 1) : 0, friction ? uniform(0, z) : 0);
     if (rolling) m = contact_material_rolling(m, uniform(0.1, 1), 2.25, uniform(0, z));
     return m;
 }
 
-static void add_link(struct network *net, int i, int j, double delta, vec3 n, struct contact_material m)
+static void add_link(
+    struct network *net, int i, int j, double delta, vec3 n, struct contact_material m)
 {
     assert_true(net->n_link < LINKS_MOST);
     struct link *k = &net->link[net->n_link++];
@@ -40,11 +42,14 @@ static void add_link(struct network *net, int i, int j, double delta, vec3 n, st
     k->material = m;
     k->l_i = net->r[i] - (j < 0 ? delta : 0.5 * delta);
     k->l_j = j < 0 ? 0 : net->r[j] - 0.5 * delta;
-    k->ends = (struct limit_ends){net->w[i], j < 0 ? 0 : net->w[j], net->r[i], j < 0 ? 0 : net->r[j]};
+    k->ends =
+        (struct limit_ends){net->w[i], j < 0 ? 0 : net->w[j], net->r[i], j < 0 ? 0 : net->r[j]};
 }
 
-/* Spheres at random places of a unit box, with its walls; every overlap is a contact, some bonded from a little apart. */
-static void random_network(struct network *net, double ratio, double spread, double z, bool friction, bool rolling)
+/* Spheres at random places of a unit box, with its walls; every overlap is a contact, some bonded
+ * from a little apart. */
+static void random_network(
+    struct network *net, double ratio, double spread, double z, bool friction, bool rolling)
 {
     net->n = N_MOST;
     net->n_link = 0;
@@ -55,14 +60,17 @@ static void random_network(struct network *net, double ratio, double spread, dou
     }
     for (int i = 0; i < net->n; i++) {
         for (int j = i + 1; j < net->n; j++) {
-            vec3 d = v3_sub(v3(net->x[3 * j], net->x[3 * j + 1], net->x[3 * j + 2]), v3(net->x[3 * i], net->x[3 * i + 1], net->x[3 * i + 2]));
+            vec3 d = v3_sub(v3(net->x[3 * j], net->x[3 * j + 1], net->x[3 * j + 2]),
+                v3(net->x[3 * i], net->x[3 * i + 1], net->x[3 * i + 2]));
             double distance = sqrt(v3_dot(d, d)), delta = net->r[i] + net->r[j] - distance;
             if (delta > -0.02 * fmin(net->r[i], net->r[j]))
-                add_link(net, i, j, delta, v3_scale(1 / distance, d), random_material(spread, z, friction, rolling));
+                add_link(net, i, j, delta, v3_scale(1 / distance, d),
+                    random_material(spread, z, friction, rolling));
         }
         for (int a = 0; a < 3; a++)
             if (net->x[3 * i + a] < net->r[i])
-                add_link(net, i, -1, net->r[i] - net->x[3 * i + a], v3(a == 0 ? -1 : 0, a == 1 ? -1 : 0, a == 2 ? -1 : 0),
+                add_link(net, i, -1, net->r[i] - net->x[3 * i + a],
+                    v3(a == 0 ? -1 : 0, a == 1 ? -1 : 0, a == 2 ? -1 : 0),
                     random_material(spread, z, friction, rolling));
     }
 }
@@ -88,38 +96,46 @@ static double bound(const struct network *net, double dt, double share)
     return least;
 }
 
-/* a += f g g^T in coordinates x m^(1/2), theta I^(1/2) of all spheres; g: the gradient of one relative displacement at link k: translation t of i
- * against -t of j, rotation turn_i, turn_j. */
-static void add_square(double *a, const struct network *net, const struct link *k, double f, vec3 t, vec3 turn_i, vec3 turn_j)
+/* a += f g g^T in coordinates x m^(1/2), theta I^(1/2) of all spheres; g: the gradient of one
+ * relative displacement at link k: translation t of i against -t of j, rotation turn_i, turn_j. */
+static void add_square(double *a, const struct network *net, const struct link *k, double f, vec3 t,
+    vec3 turn_i, vec3 turn_j)
 {
     int size = 6 * net->n, end[2] = {k->i, k->j};
     double g[12];
     for (int b = 0; b < 2; b++) {
-        double root = end[b] < 0 ? 0 : sqrt(net->w[end[b]]), spin = end[b] < 0 ? 0 : root * sqrt(2.5) / net->r[end[b]], sign = b ? -1 : 1;
+        double root = end[b] < 0 ? 0 : sqrt(net->w[end[b]]),
+               spin = end[b] < 0 ? 0 : root * sqrt(2.5) / net->r[end[b]], sign = b ? -1 : 1;
         vec3 turn = b ? turn_j : turn_i;
-        const double value[6] = {sign * root * t.x, sign * root * t.y, sign * root * t.z, spin * turn.x, spin * turn.y, spin * turn.z};
+        const double value[6] = {sign * root * t.x, sign * root * t.y, sign * root * t.z,
+            spin * turn.x, spin * turn.y, spin * turn.z};
         for (int c = 0; c < 6; c++) g[6 * b + c] = value[c];
     }
     for (int p = 0; p < (k->j < 0 ? 6 : 12); p++)
-        for (int q = 0; q < (k->j < 0 ? 6 : 12); q++) a[(6 * end[p / 6] + p % 6) * size + 6 * end[q / 6] + q % 6] += f * g[p] * g[q];
+        for (int q = 0; q < (k->j < 0 ? 6 : 12); q++)
+            a[(6 * end[p / 6] + p % 6) * size + 6 * end[q / 6] + q % 6] += f * g[p] * g[q];
 }
 
 /* dt^2 K + 2 dt C, [6 n][6 n]; with dt_centre in the dashpots. */
-static void assemble(const struct network *net, double dt, double damping, double dt_centre, double *a)
+static void assemble(
+    const struct network *net, double dt, double damping, double dt_centre, double *a)
 {
     int size = 6 * net->n;
     for (int i = 0; i < size * size; i++) a[i] = 0;
     for (int k = 0; k < net->n_link; k++) {
         const struct link *l = &net->link[k];
         struct limit_contact c = contact_of(l, dt_centre);
-        vec3 n = l->n, zero = v3(0, 0, 0), t1 = v3_cross(n, fabs(n.x) < 0.6 ? v3(1, 0, 0) : v3(0, 1, 0));
+        vec3 n = l->n, zero = v3(0, 0, 0),
+             t1 = v3_cross(n, fabs(n.x) < 0.6 ? v3(1, 0, 0) : v3(0, 1, 0));
         t1 = v3_scale(1 / sqrt(v3_dot(t1, t1)), t1);
         vec3 t[2] = {t1, v3_cross(n, t1)};
         add_square(a, net, l, dt * dt * c.k_n + damping * 2 * dt * c.gamma_n, n, zero, zero);
         for (int b = 0; b < 2; b++) {
             vec3 turn = v3_cross(n, t[b]);
-            add_square(a, net, l, dt * dt * c.k_t + damping * 2 * dt * c.gamma_t, t[b], v3_scale(l->l_i, turn), v3_scale(l->l_j, turn));
-            add_square(a, net, l, dt * dt * c.k_r + damping * 2 * dt * c.c_r, zero, t[b], v3_neg(t[b]));
+            add_square(a, net, l, dt * dt * c.k_t + damping * 2 * dt * c.gamma_t, t[b],
+                v3_scale(l->l_i, turn), v3_scale(l->l_j, turn));
+            add_square(
+                a, net, l, dt * dt * c.k_r + damping * 2 * dt * c.c_r, zero, t[b], v3_neg(t[b]));
         }
     }
 }
@@ -145,11 +161,13 @@ static void never_above(void **state)
         least = fmin(least, ratio);
         count++;
     }
-    print_message("bound over true limit: mean %.3f, least %.3f of %d networks\n", sum / count, least, count);
+    print_message(
+        "bound over true limit: mean %.3f, least %.3f of %d networks\n", sum / count, least, count);
     assert_between(sum / count, 0.75, 0.99);
 }
 
-/* Damped: 4 - dt^2 K - 2 dt C is positive at the bound, with lagged dashpots and with centred ones. */
+/* Damped: 4 - dt^2 K - 2 dt C is positive at the bound, with lagged dashpots and with centred
+ * ones. */
 static void damped(void **state)
 {
     (void)state;
@@ -185,7 +203,8 @@ static double power(const struct network *net)
             const struct link *l = &net->link[k];
             const double n[3] = {l->n.x, l->n.y, l->n.z};
             double u = 0, wi = sqrt(net->w[l->i]), wj = l->j < 0 ? 0 : sqrt(net->w[l->j]);
-            for (int c = 0; c < 3; c++) u += n[c] * (wi * x[3 * l->i + c] - (l->j < 0 ? 0 : wj * x[3 * l->j + c]));
+            for (int c = 0; c < 3; c++)
+                u += n[c] * (wi * x[3 * l->i + c] - (l->j < 0 ? 0 : wj * x[3 * l->j + c]));
             for (int c = 0; c < 3; c++) {
                 y[3 * l->i + c] += l->material.k_n * u * n[c] * wi;
                 if (l->j >= 0) y[3 * l->j + c] -= l->material.k_n * u * n[c] * wj;
@@ -198,7 +217,8 @@ static double power(const struct network *net)
     return norm;
 }
 
-/* Many small spheres on a large one of ten times their size: the case that weights 1/m would get wrong by a factor of 8. */
+/* Many small spheres on a large one of ten times their size: the case that weights 1/m would get
+ * wrong by a factor of 8. */
 static void small_on_large(void **state)
 {
     (void)state;
@@ -221,6 +241,7 @@ static void small_on_large(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(never_above), cmocka_unit_test(damped), cmocka_unit_test(small_on_large)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(never_above), cmocka_unit_test(damped), cmocka_unit_test(small_on_large)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,7 +7,8 @@ double body_size(vec3 a)
     return sqrt((double)v3_dot(a, a));
 }
 
-void body_build(struct body *b, const int size[3], int (*solid)(int x, int y, int z), int periodic, double h)
+void body_build(
+    struct body *b, const int size[3], int (*solid)(int x, int y, int z), int periodic, double h)
 {
     static int cell[64][16][16];
     memset(b, 0, sizeof *b);
@@ -53,7 +54,8 @@ void body_shake(struct body *b, double shift, double turn)
 
 pvec3 body_place(const struct body *b, int i)
 {
-    return p3((preal)(b->h * b->at[i][0]), (preal)(b->h * b->at[i][1]), (preal)(b->h * b->at[i][2]));
+    return p3(
+        (preal)(b->h * b->at[i][0]), (preal)(b->h * b->at[i][1]), (preal)(b->h * b->at[i][2]));
 }
 
 pvec3 body_now(const struct body *b, int i)
@@ -83,7 +85,9 @@ void body_load(struct body *b, const double S[3][3])
         for (int face = 0; face < 6; face++) {
             double sign = face & 1 ? 1 : -1;
             const double *row = S[face / 2];
-            if (b->neighbour[i][face] < 0) b->traction[i][face] = v3((real)(sign * row[0]), (real)(sign * row[1]), (real)(sign * row[2]));
+            if (b->neighbour[i][face] < 0)
+                b->traction[i][face] =
+                    v3((real)(sign * row[0]), (real)(sign * row[1]), (real)(sign * row[2]));
         }
 }
 
@@ -102,11 +106,13 @@ struct body_link body_link_of(const struct body *b, int i, int face)
 {
     int other = b->neighbour[i][face];
     struct body_link l = {.axis = face / 2, .i = face & 1 ? i : other, .j = face & 1 ? other : i};
-    struct link_stiffness k = l.i >= 0 && l.j >= 0 ? link_constants_between(b->set, material_of(b, l.i), material_of(b, l.j), b->h)
-                                                   : link_constants_wall(b->set, material_of(b, i), b->h);
+    struct link_stiffness k =
+        l.i >= 0 && l.j >= 0
+            ? link_constants_between(b->set, material_of(b, l.i), material_of(b, l.j), b->h)
+            : link_constants_wall(b->set, material_of(b, i), b->h);
     int swap = l.i < 0; /* the wall is the lower one */
-    l.k = (struct link_constants){
-        (real)k.kn, (real)k.ks, (real)k.kt, (real)k.kb, (real)(swap ? k.r_j : k.r_i), (real)(swap ? k.r_i : k.r_j), (real)b->h, (real)k.eta};
+    l.k = (struct link_constants){(real)k.kn, (real)k.ks, (real)k.kt, (real)k.kb,
+        (real)(swap ? k.r_j : k.r_i), (real)(swap ? k.r_i : k.r_j), (real)b->h, (real)k.eta};
     l.lower = cell_of(b, l.i);
     l.upper = cell_of(b, l.j);
     return l;
@@ -128,8 +134,8 @@ static struct link_state state_of(const struct body_link *l)
 static struct volume_constants volume_of(const struct body *b, int i)
 {
     struct link_material m = material_of(b, i);
-    return (struct volume_constants){
-        (real)link_constants_lambda(b->set, m), (real)(0.25 / link_constants_shear(m)), (real)(0.5 / b->h), (real)(b->h * b->h * b->h)};
+    return (struct volume_constants){(real)link_constants_lambda(b->set, m),
+        (real)(0.25 / link_constants_shear(m)), (real)(0.5 / b->h), (real)(b->h * b->h * b->h)};
 }
 
 /* Outward normal of a face, as far as the kinematics turn it. */
@@ -163,7 +169,8 @@ static real strain_of(const struct body *b, int i, int rate)
         if (has_link(b, i, face)) {
             struct body_link l = body_link_of(b, i, face);
             struct link_state s = state_of(&l);
-            real stretch = rate ? link_normal_rate(s) : link_stretch(s, (real)material_of(b, i).damping);
+            real stretch =
+                rate ? link_normal_rate(s) : link_stretch(s, (real)material_of(b, i).damping);
             sum += volume_part(1, face & 1 ? l.k.r_i : l.k.r_j, stretch);
             links |= 1 << face;
         }
@@ -178,7 +185,8 @@ static struct link_share share_of(const struct body *b, int i, int face)
     if (has_link(b, i, face)) {
         struct body_link l = body_link_of(b, i, face);
         struct link_state s = state_of(&l);
-        real p_i = l.i < 0 ? 0 : volume_of(b, l.i).lambda * b->strain[l.i], p_j = l.j < 0 ? 0 : volume_of(b, l.j).lambda * b->strain[l.j];
+        real p_i = l.i < 0 ? 0 : volume_of(b, l.i).lambda * b->strain[l.i],
+             p_j = l.j < 0 ? 0 : volume_of(b, l.j).lambda * b->strain[l.j];
         struct link_force f = link_force_of(s, l.k, p_i, p_j);
         return face & 1 ? link_on_lower(l.axis, s, f) : link_on_upper(l.axis, s, f);
     }
@@ -200,7 +208,8 @@ void body_forces(struct body *b)
             b->force[i] = v3_add(b->force[i], s[face].force);
             b->torque[i] = v3_add(b->torque[i], s[face].torque);
             if (has_link(b, i, face)) b->links[i] |= 1 << face;
-            if (has_link(b, i, face) || body_size(b->traction[i][face]) > 0) b->faces[i] |= 1 << face;
+            if (has_link(b, i, face) || body_size(b->traction[i][face]) > 0)
+                b->faces[i] |= 1 << face;
         }
         for (int form = 0; form < 2; form++) {
             b->rows[form][i].x = stress_row(s[1].force, s[0].force, 0, b->faces[i], form, per_area);
@@ -226,7 +235,8 @@ static double total(const struct body *b, int rate)
         }
         if (!WITH_VOLUME) continue;
         real squares, traction = tractions_of(b, i, &squares), strain = strain_of(b, i, rate);
-        double energy = (double)volume_energy(strain, rate ? 0 : traction, rate ? 0 : squares, links, volume_of(b, i));
+        double energy = (double)volume_energy(
+            strain, rate ? 0 : traction, rate ? 0 : squares, links, volume_of(b, i));
         sum += rate ? 2 * material_of(b, i).damping * energy : energy;
     }
     return sum;

@@ -1,5 +1,6 @@
-/* A small body of cells, evaluated with the laws as a kernel would: each cell looks at its six faces and keeps its own share. The flags of the laws
- * are those of the executable. Its constants come from src/laws/link_constants.h. */
+/* A small body of cells, evaluated with the laws as a kernel would: each cell looks at its six
+ * faces and keeps its own share. The flags of the laws are those of the executable. Its constants
+ * come from src/laws/link_constants.h. */
 #ifndef DEMOCLES_LINK_BODY_H
 #define DEMOCLES_LINK_BODY_H
 
@@ -32,8 +33,10 @@ struct body {
     int links[BODY_MOST], faces[BODY_MOST]; /* masks: with a link; with a link or a load */
 };
 
-/* The cells of a grid for which solid(x, y, z) holds (NULL: all), at rest, of material 0; periodic: bits of axes. */
-void body_build(struct body *b, const int size[3], int (*solid)(int x, int y, int z), int periodic, double h);
+/* The cells of a grid for which solid(x, y, z) holds (NULL: all), at rest, of material 0; periodic:
+ * bits of axes. */
+void body_build(
+    struct body *b, const int size[3], int (*solid)(int x, int y, int z), int periodic, double h);
 /* Random u, v [m, m/s] and rotations [rad, rad/s] of these sizes. */
 void body_shake(struct body *b, double shift, double turn);
 /* Turns the whole body by Q about the origin: u, q, v, w and tractions. */
@@ -44,7 +47,8 @@ pvec3 body_now(const struct body *b, int i);
 /* Tractions S n on all faces without link; S [Pa]. */
 void body_load(struct body *b, const double S[3][3]);
 
-/* The link over face `face` of cell i, in the direction that laws want; `upper`: i is its higher cell. */
+/* The link over face `face` of cell i, in the direction that laws want; `upper`: i is its higher
+ * cell. */
 struct body_link {
     struct link_cell lower, upper;
     struct link_constants k;
@@ -56,8 +60,9 @@ void body_forces(struct body *b);
 double body_energy(const struct body *b);      /* [J] */
 double body_dissipation(const struct body *b); /* [W] */
 
-/* Static solution by conjugate gradients: u and theta such that forces and torques, with the loads f [n][6] and the tractions of `b`, are zero.
- * free [n][6]: 1 or 0. Small rotations. Returns the residual over the load. */
+/* Static solution by conjugate gradients: u and theta such that forces and torques, with the loads
+ * f [n][6] and the tractions of `b`, are zero. free [n][6]: 1 or 0. Small rotations. Returns the
+ * residual over the load. */
 double body_solve(struct body *b, const double (*f)[6], const int (*free)[6], int rounds);
 
 struct lattice_body body_lattice(const struct body *b);

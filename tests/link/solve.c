@@ -1,4 +1,5 @@
-/* Conjugate gradients on the linear law; K is applied as the difference of forces, so tractions and the law itself are all that is known. */
+/* Conjugate gradients on the linear law; K is applied as the difference of forces, so tractions and
+ * the law itself are all that is known. */
 #include "body.h"
 
 typedef double vector[BODY_MOST][6];
@@ -17,8 +18,8 @@ static void get(struct body *b, const vector x, const int (*free)[6], vector f)
     put(b, x);
     body_forces(b);
     for (int i = 0; i < b->n; i++) {
-        const double y[6] = {(double)b->force[i].x, (double)b->force[i].y, (double)b->force[i].z, (double)b->torque[i].x, (double)b->torque[i].y,
-            (double)b->torque[i].z};
+        const double y[6] = {(double)b->force[i].x, (double)b->force[i].y, (double)b->force[i].z,
+            (double)b->torque[i].x, (double)b->torque[i].y, (double)b->torque[i].z};
         for (int c = 0; c < 6; c++) f[i][c] = free[i][c] ? y[c] : 0;
     }
 }
@@ -58,7 +59,8 @@ double body_solve(struct body *b, const double (*f)[6], const int (*free)[6], in
             }
         next = product(b, r, r);
         for (int i = 0; i < b->n; i++)
-            for (int c = 0; c < 6; c++) p[i][c] = (c < 3 ? r[i][c] : r[i][c] / (b->h * b->h)) + next / rr * p[i][c];
+            for (int c = 0; c < 6; c++)
+                p[i][c] = (c < 3 ? r[i][c] : r[i][c] / (b->h * b->h)) + next / rr * p[i][c];
         rr = next;
     }
     put(b, x);

@@ -13,7 +13,8 @@ static struct break_result decide(const struct body *b, int i, int face, struct 
 }
 
 /* One link along `axis`; relative displacement and rotation, axis first. */
-static struct break_result pair(int axis, vec3 shift, vec3 turn, struct break_limits limits, struct break_load *load)
+static struct break_result pair(
+    int axis, vec3 shift, vec3 turn, struct break_limits limits, struct break_load *load)
 {
     const double E = 100, h = 0.5;
     int size[3] = {1, 1, 1};
@@ -46,13 +47,18 @@ static void modes(void **state)
         one.normal = (real)(1 / (1.01 * k * x));
         assert_int_equal(pair(axis, v3((real)x, 0, 0), v3(0, 0, 0), one, &l).mode, BREAK_INTACT);
         one.shear = (real)(1 / (k * x)) * (real)1.01;
-        assert_int_equal(pair(axis, v3(0, (real)(0.6 * x), (real)(0.8 * x)), v3(0, 0, 0), one, &l).mode, BREAK_SHEAR);
+        assert_int_equal(
+            pair(axis, v3(0, (real)(0.6 * x), (real)(0.8 * x)), v3(0, 0, 0), one, &l).mode,
+            BREAK_SHEAR);
         assert_near(l.shear, k * x, 1e-15);
         one.bend = (real)(1.01 / (kb * sin(x)));
-        assert_int_equal(pair(axis, v3(0, 0, 0), v3(0, (real)(0.3 * x), (real)(0.4 * x)), one, &l).mode, BREAK_BENDING);
+        assert_int_equal(
+            pair(axis, v3(0, 0, 0), v3(0, (real)(0.3 * x), (real)(0.4 * x)), one, &l).mode,
+            BREAK_BENDING);
         assert_near(l.bend, kb * x, 1e-6 * kb * x);
         one.twist = one.bend;
-        assert_int_equal(pair(axis, v3(0, 0, 0), v3((real)(-0.5 * x), 0, 0), one, &l).mode, BREAK_TWIST);
+        assert_int_equal(
+            pair(axis, v3(0, 0, 0), v3((real)(-0.5 * x), 0, 0), one, &l).mode, BREAK_TWIST);
         assert_near(l.twist, kb * x, 1e-6 * kb * x);
     }
 }
@@ -76,19 +82,24 @@ static void criteria(void **state)
     assert_int_equal(break_of(push, k).mode, BREAK_INTACT);
 }
 
-/* The limits in stresses: a uniform pull at sigma_c, a shear at tau_c, a bending whose edge has sigma_c. */
+/* The limits in stresses: a uniform pull at sigma_c, a shear at tau_c, a bending whose edge has
+ * sigma_c. */
 static void stresses(void **state)
 {
     const double h = 0.5, E = 100, sigma = 0.05, tau = 0.03;
-    struct link_limits l = link_constants_limits((struct link_strength){sigma, tau, BREAK_STRESS}, h);
-    struct link_limits no = link_constants_limits((struct link_strength){HUGE_VAL, HUGE_VAL, BREAK_STRESS}, h);
-    struct break_limits k = {(real)l.normal, (real)l.shear, (real)l.bend, (real)l.twist, BREAK_STRESS};
+    struct link_limits l =
+        link_constants_limits((struct link_strength){sigma, tau, BREAK_STRESS}, h);
+    struct link_limits no =
+        link_constants_limits((struct link_strength){HUGE_VAL, HUGE_VAL, BREAK_STRESS}, h);
+    struct break_limits k = {
+        (real)l.normal, (real)l.shear, (real)l.bend, (real)l.twist, BREAK_STRESS};
     struct break_load load;
     (void)state;
     assert_near(pair(0, v3(sigma / E * h, 0, 0), v3(0, 0, 0), k, &load).measure, 1, 1e-13);
     assert_near(pair(0, v3(0, tau / E * h, 0), v3(0, 0, 0), k, &load).measure, 1, 1e-13);
     /* curvature chi/h, edge at h/2: E (chi/h) (h/2) = sigma */
-    double angle = sigma / E, gap = WITH_TURN ? angle / 2 : 0; /* faces that turn open the middle by h angle^2/2 */
+    /* faces that turn open the middle by h angle^2/2 */
+    double angle = sigma / E, gap = WITH_TURN ? angle / 2 : 0;
     assert_near(pair(0, v3(0, 0, 0), v3(0, 0, angle), k, &load).measure, 1 + gap, 1e-6);
     assert_true(no.normal == 0 && no.shear == 0 && no.bend == 0 && no.twist == 0);
 }
@@ -131,12 +142,13 @@ static void energy(void **state)
     pair(1, v3((real)x, 0, 0), v3(0, 0, 0), none, &l);
     assert_near(body_energy(&body), 0.5 * E * h * x * x, 1e-15);
     pair(2, v3(0, 0, 0), v3(0, 0, (real)x), none, &l); /* angle 2 x between the two */
-    assert_near(body_energy(&body), 0.5 * E * h * h * h / 12 * 4 * x * x, 1e-5 * E * h * h * h / 6 * x * x);
+    assert_near(
+        body_energy(&body), 0.5 * E * h * h * h / 12 * 4 * x * x, 1e-5 * E * h * h * h / 6 * x * x);
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(modes), cmocka_unit_test(criteria), cmocka_unit_test(stresses), cmocka_unit_test(both_ends), cmocka_unit_test(energy)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(modes), cmocka_unit_test(criteria),
+        cmocka_unit_test(stresses), cmocka_unit_test(both_ends), cmocka_unit_test(energy)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* Constants of links against the homogenised moduli, the limits of mixed links, and what is refused. */
+/* Constants of links against the homogenised moduli, the limits of mixed links, and what is
+ * refused. */
 #include "laws/link_constants.h"
 #include "tests/limit/limit_test.h"
 
@@ -30,9 +31,11 @@ static void without_poisson(void **state)
     struct link_material a = steel, b = soft;
     (void)state;
     a.poisson = b.poisson = 0;
-    struct link_stiffness k = link_constants_between(LINK_ISOTROPIC, a, b, 0.1), seed = link_constants_between(LINK_SEED, a, a, 0.1);
+    struct link_stiffness k = link_constants_between(LINK_ISOTROPIC, a, b, 0.1),
+                          seed = link_constants_between(LINK_SEED, a, a, 0.1);
     assert_true(!link_constants_shear_apart(k) && !link_constants_twist_apart(k));
-    assert_near(k.kn / (0.1 * 2 * a.young * b.young / (a.young + b.young)), 1, 1e-14); /* two springs in series */
+    /* two springs in series */
+    assert_near(k.kn / (0.1 * 2 * a.young * b.young / (a.young + b.young)), 1, 1e-14);
     assert_true(seed.kn == seed.ks && seed.kt == seed.kb);
     assert_near(seed.kn / (a.young * 0.1), 1, 1e-14);
     assert_near(seed.kb / (a.young * 1e-3), 1, 1e-14);
@@ -44,12 +47,14 @@ static void mixed(void **state)
                           back = link_constants_between(LINK_ISOTROPIC, soft, steel, 0.01);
     struct link_material rigid = steel;
     (void)state;
-    assert_true(k.kn == back.kn && k.ks == back.ks && k.kt == back.kt && k.kb == back.kb && k.r_i == back.r_j && k.r_j == back.r_i);
+    assert_true(k.kn == back.kn && k.ks == back.ks && k.kt == back.kt && k.kb == back.kb &&
+                k.r_i == back.r_j && k.r_j == back.r_i);
     assert_near(k.r_i + k.r_j, 2, 1e-15);
     assert_true(link_constants_shear_apart(k) && k.kn > k.ks);
     assert_near(k.eta, 2e-8, 1e-22);
     rigid.young *= 1e9; /* a wall is the limit */
-    struct link_stiffness wall = link_constants_wall(LINK_ISOTROPIC, steel, 0.01), near = link_constants_between(LINK_ISOTROPIC, steel, rigid, 0.01);
+    struct link_stiffness wall = link_constants_wall(LINK_ISOTROPIC, steel, 0.01),
+                          near = link_constants_between(LINK_ISOTROPIC, steel, rigid, 0.01);
     assert_near(near.kn / wall.kn, 1, 1e-8);
     assert_near(near.ks / wall.ks, 1, 1e-8);
     assert_near(near.kt / wall.kt, 1, 1e-8);
@@ -64,19 +69,28 @@ static void strength(void **state)
     const struct link_strength a = {2, 5, 1}, b = {3, HUGE_VAL, 0}, c = {3, HUGE_VAL, 2};
     (void)state;
     assert_true(link_constants_weaker(a, b).tension == 2 && link_constants_weaker(b, a).shear == 5);
-    assert_true(link_constants_weaker(a, b).criterion == 1 && link_constants_weaker(b, a).criterion == 1);
-    assert_true(link_constants_weaker(b, c).criterion == 0 && link_constants_weaker(c, b).criterion == 0);
+    assert_true(
+        link_constants_weaker(a, b).criterion == 1 && link_constants_weaker(b, a).criterion == 1);
+    assert_true(
+        link_constants_weaker(b, c).criterion == 0 && link_constants_weaker(c, b).criterion == 0);
     /* glass: E = 70 GPa, G_c = 8 J/m2, h = 1 mm */
     const struct link_material glass = {2500, 70e9, 0.22, 0};
     assert_near(link_constants_tension(glass, 8, 1e-3, false) / 17.748239e6, 1, 1e-7);
-    assert_near(link_constants_tension(glass, 8, 1e-3, true) / link_constants_tension(glass, 8, 1e-3, false), 1 / sqrt(1 - 0.22 * 0.22), 1e-14);
-    assert_near(link_constants_tension(glass, 8, 0.25e-3, true) / link_constants_tension(glass, 8, 1e-3, true), 2, 1e-14);
+    assert_near(link_constants_tension(glass, 8, 1e-3, true) /
+                    link_constants_tension(glass, 8, 1e-3, false),
+        1 / sqrt(1 - 0.22 * 0.22), 1e-14);
+    assert_near(link_constants_tension(glass, 8, 0.25e-3, true) /
+                    link_constants_tension(glass, 8, 1e-3, true),
+        2, 1e-14);
 }
 
-static void refused(enum link_set set, double density, double young, double poisson, double damping, const char *word)
+static void refused(enum link_set set, double density, double young, double poisson, double damping,
+    const char *word)
 {
-    const char *text = link_constants_refusal(set, (struct link_material){density, young, poisson, damping});
-    if (!text || !strstr(text, word)) fail_msg("not refused for %s: %s", word, text ? text : "accepted");
+    const char *text =
+        link_constants_refusal(set, (struct link_material){density, young, poisson, damping});
+    if (!text || !strstr(text, word))
+        fail_msg("not refused for %s: %s", word, text ? text : "accepted");
 }
 
 static void refusals(void **state)
@@ -97,7 +111,7 @@ static void refusals(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(moduli), cmocka_unit_test(without_poisson), cmocka_unit_test(mixed), cmocka_unit_test(strength), cmocka_unit_test(refusals)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(moduli), cmocka_unit_test(without_poisson),
+        cmocka_unit_test(mixed), cmocka_unit_test(strength), cmocka_unit_test(refusals)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

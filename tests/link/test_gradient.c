@@ -1,4 +1,5 @@
-/* Forces and torques are the gradient of the energy: central differences of fourth order, a body of several materials, with rotations. */
+/* Forces and torques are the gradient of the energy: central differences of fourth order, a body of
+ * several materials, with rotations. */
 #include "body.h"
 
 static struct body body;
@@ -36,7 +37,8 @@ static void gradient(void **state)
     double worst = 0, largest = 0;
     body_build(&body, size, with_hole, 0, 1);
     body.materials[0].poisson = WITH_VOLUME ? 0.3 : 0;
-    body.materials[1] = (struct link_material){.density = 2, .young = 0.3, .poisson = WITH_SHEAR_APART ? -0.2 : body.materials[0].poisson};
+    body.materials[1] = (struct link_material){
+        .density = 2, .young = 0.3, .poisson = WITH_SHEAR_APART ? -0.2 : body.materials[0].poisson};
     for (int i = 0; i < body.n; i++) body.material[i] = (uint8_t)(i % 2);
     body.walls[0] = 1;
     body_shake(&body, 0.05, 0.1);
@@ -47,7 +49,8 @@ static void gradient(void **state)
     body_forces(&body);
     for (int i = 0; i < body.n; i++)
         for (int c = 0; c < 6; c++) {
-            double far = energy_at(i, c, 2 * step) - energy_at(i, c, -2 * step), near = energy_at(i, c, step) - energy_at(i, c, -step);
+            double far = energy_at(i, c, 2 * step) - energy_at(i, c, -2 * step),
+                   near = energy_at(i, c, step) - energy_at(i, c, -step);
             double expected = -(8 * near - far) / (12 * step);
             vec3 f = c < 3 ? body.force[i] : body.torque[i];
             double value = c % 3 == 0 ? f.x : c % 3 == 1 ? f.y : f.z;

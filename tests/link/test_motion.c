@@ -15,7 +15,8 @@ static void build(double shift, double turn)
     const int size[3] = {4, 3, 2};
     body_build(&body, size, with_hole, 0, 0.5);
     body.materials[0] = (struct link_material){1, 2, WITH_VOLUME ? 0.3 : 0, 0.1};
-    body.materials[1] = (struct link_material){2, 0.7, WITH_SHEAR_APART ? -0.2 : body.materials[0].poisson, 0.2};
+    body.materials[1] =
+        (struct link_material){2, 0.7, WITH_SHEAR_APART ? -0.2 : body.materials[0].poisson, 0.2};
     for (int i = 0; i < body.n; i++) body.material[i] = (uint8_t)(i % 3 == 0);
     body_shake(&body, shift, turn);
 }
@@ -23,7 +24,8 @@ static void build(double shift, double turn)
 static double worst_force(const struct body *b)
 {
     double worst = 0;
-    for (int i = 0; i < b->n; i++) worst = fmax(worst, fmax(body_size(b->force[i]), body_size(b->torque[i])));
+    for (int i = 0; i < b->n; i++)
+        worst = fmax(worst, fmax(body_size(b->force[i]), body_size(b->torque[i])));
     return worst;
 }
 
@@ -40,12 +42,15 @@ static void rigid(void **state)
             body.u[i] = p3_cross(W, body_place(&body, i));
         }
     }
-    for (int i = 0; i < body.n; i++) body.u[i] = p3_add(body.u[i], p3((preal)0.5, (preal)2, (preal)-1));
+    for (int i = 0; i < body.n; i++)
+        body.u[i] = p3_add(body.u[i], p3((preal)0.5, (preal)2, (preal)-1));
     body_forces(&body);
     printf("largest force of a rigid motion over E h^2: %.2g\n", worst_force(&body) / (2 * 0.25));
-    assert_below(worst_force(&body), 400 * BODY_EPS * 2 * 0.25); /* gaps of 1e-16 (size of u) times E h; 12 or so of them */
+    /* gaps of 1e-16 (size of u) times E h; 12 or so of them */
+    assert_below(worst_force(&body), 400 * BODY_EPS * 2 * 0.25);
     for (int i = 0; i < body.n; i++)
-        for (int form = 0; form < 2; form++) assert_below(body_size(body.rows[form][i].x), 800 * BODY_EPS * 2);
+        for (int form = 0; form < 2; form++)
+            assert_below(body_size(body.rows[form][i].x), 800 * BODY_EPS * 2);
 }
 
 static vec3 turned(vec3 a)
@@ -78,7 +83,8 @@ static void superposed(void **state)
     body_forces(&other);
     scale = 200 * BODY_EPS * 2 * 0.25;
     for (int i = 0; i < body.n; i++) {
-        struct stress_rows a = world_stress(&body, i), b = world_stress(&other, i), c; /* Q a Q^T: rows, then columns */
+        /* Q a Q^T: rows, then columns */
+        struct stress_rows a = world_stress(&body, i), b = world_stress(&other, i), c;
         vec3 x = turned(a.x), y = turned(a.y), z = turned(a.z);
         c.x = turned(v3(x.x, y.x, z.x));
         c.y = turned(v3(x.y, y.y, z.y));
@@ -114,7 +120,8 @@ static void momenta(void **state)
         L[1] += (double)l.y;
         L[2] += (double)l.z;
     }
-    printf("sum of forces %.2g, of moments %.2g, largest force %.2g\n", fabs(P[0]) + fabs(P[1]) + fabs(P[2]), fabs(L[0]) + fabs(L[1]) + fabs(L[2]),
+    printf("sum of forces %.2g, of moments %.2g, largest force %.2g\n",
+        fabs(P[0]) + fabs(P[1]) + fabs(P[2]), fabs(L[0]) + fabs(L[1]) + fabs(L[2]),
         worst_force(&body));
     for (int c = 0; c < 3; c++) {
         assert_below(fabs(P[c]), 20 * BODY_EPS * worst_force(&body));
@@ -122,7 +129,8 @@ static void momenta(void **state)
     }
 }
 
-/* Dashpots never give power, nothing to a strained body that moves rigidly, and what they take is what they say. */
+/* Dashpots never give power, nothing to a strained body that moves rigidly, and what they take is
+ * what they say. */
 static void damping(void **state)
 {
     double power = 0, taken, scale = 0;
@@ -137,7 +145,8 @@ static void damping(void **state)
         body_forces(&body);
         body_forces(&other);
         for (int i = 0; i < body.n; i++)
-            power += (double)(v3_dot(v3_sub(body.force[i], other.force[i]), body.v[i]) + v3_dot(v3_sub(body.torque[i], other.torque[i]), body.w[i]));
+            power += (double)(v3_dot(v3_sub(body.force[i], other.force[i]), body.v[i]) +
+                              v3_dot(v3_sub(body.torque[i], other.torque[i]), body.w[i]));
         taken = body_dissipation(&body);
         assert_true(taken > 0);
         assert_near(power, -taken, 400 * BODY_EPS * taken);
@@ -145,7 +154,8 @@ static void damping(void **state)
     build(0.05, 0.1);
     for (int i = 0; i < body.n; i++) {
         body.w[i] = v3((real)0.3, (real)-0.2, (real)0.5);
-        body.v[i] = v3_add(v3(1, 2, 3), v3_cross(body.w[i], v3_of_p3(WITH_TURN ? body_now(&body, i) : body_place(&body, i))));
+        body.v[i] = v3_add(v3(1, 2, 3),
+            v3_cross(body.w[i], v3_of_p3(WITH_TURN ? body_now(&body, i) : body_place(&body, i))));
     }
     other = body;
     other.materials[0].damping = other.materials[1].damping = 0;
@@ -160,6 +170,7 @@ static void damping(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(rigid), cmocka_unit_test(superposed), cmocka_unit_test(momenta), cmocka_unit_test(damping)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(rigid), cmocka_unit_test(superposed),
+        cmocka_unit_test(momenta), cmocka_unit_test(damping)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* Rotations: columns against Rodrigues, several turns about a skew axis, and the order of the updates that RK4 and RKN4 make. */
+/* Rotations: columns against Rodrigues, several turns about a skew axis, and the order of the
+ * updates that RK4 and RKN4 make. */
 #include "kernels/common/quat.h"
 #include "tests/limit/limit_test.h"
 
@@ -9,7 +10,8 @@ static const double axis[3] = {2.0 / 7, -3.0 / 7, 6.0 / 7}; /* a unit vector off
 static struct quat exact(double angle)
 {
     double s = sin(angle / 2);
-    return quat_of((preal)cos(angle / 2), (preal)(s * axis[0]), (preal)(s * axis[1]), (preal)(s * axis[2]));
+    return quat_of(
+        (preal)cos(angle / 2), (preal)(s * axis[0]), (preal)(s * axis[1]), (preal)(s * axis[2]));
 }
 
 static double size(pvec3 a)
@@ -19,7 +21,8 @@ static double size(pvec3 a)
 
 static double apart(struct quat a, struct quat b) /* the same rotation has two signs */
 {
-    double dw = (double)(a.w - b.w), sw = (double)(a.w + b.w), dv = size(p3_sub(a.v, b.v)), sv = size(p3_add(a.v, b.v));
+    double dw = (double)(a.w - b.w), sw = (double)(a.w + b.w), dv = size(p3_sub(a.v, b.v)),
+           sv = size(p3_add(a.v, b.v));
     return fmin(sqrt(dw * dw + dv * dv), sqrt(sw * sw + sv * sv));
 }
 
@@ -31,11 +34,15 @@ static void columns(void **state)
         for (int a = 0; a < 3; a++) {
             pvec3 d = quat_column(q, a), e = p3_uncycle(p3(1, 0, 0), a), turned = quat_rotate(q, e);
             const double found[3] = {(double)d.x, (double)d.y, (double)d.z};
-            for (int c = 0; c < 3; c++) { /* R = 1 cos + (1 - cos) n n^T + sin n x, with 1 - cos = 2 sin^2(angle/2) */
+            /* R = 1 cos + (1 - cos) n n^T + sin n x, with 1 - cos = 2 sin^2(angle/2) */
+            for (int c = 0; c < 3; c++) {
                 int next = (a + 1) % 3, other = 3 - a - c;
-                double half = sin(angle / 2), cross = c == a ? 0 : (c == next ? 1 : -1) * axis[other];
-                double wanted = 2 * half * half * (axis[a] * axis[c] - (a == c)) + sin(angle) * cross;
-                assert_near(found[c], wanted, 8 * EPS * angle); /* relative to the angle: no digit lost against 1 */
+                double half = sin(angle / 2),
+                       cross = c == a ? 0 : (c == next ? 1 : -1) * axis[other];
+                double wanted =
+                    2 * half * half * (axis[a] * axis[c] - (a == c)) + sin(angle) * cross;
+                /* relative to the angle: no digit lost against 1 */
+                assert_near(found[c], wanted, 8 * EPS * angle);
             }
             assert_near(size(p3_sub(turned, p3_add(e, d))), 0, 8 * EPS);
             assert_near(size(p3_sub(quat_unrotate(q, turned), e)), 0, 8 * EPS);
@@ -48,7 +55,8 @@ static void several_turns(void **state)
     const int steps = 4000;
     const double turns = 5.3, per_step = 2 * M_PI * turns / steps;
     struct quat q = quat_of(1, 0, 0, 0);
-    pvec3 r = p3((preal)(per_step * axis[0]), (preal)(per_step * axis[1]), (preal)(per_step * axis[2]));
+    pvec3 r =
+        p3((preal)(per_step * axis[0]), (preal)(per_step * axis[1]), (preal)(per_step * axis[2]));
     double norm;
     (void)state;
     for (int k = 0; k < steps; k++) {
@@ -56,9 +64,12 @@ static void several_turns(void **state)
         norm = (double)q.w * (double)q.w + (double)p3_dot(q.v, q.v);
         assert_near(norm, 1, 6 * EPS);
     }
-    printf("after %.1f turns in %d steps: off by %.2g\n", turns, steps, apart(q, exact(2 * M_PI * turns)));
+    printf("after %.1f turns in %d steps: off by %.2g\n", turns, steps,
+        apart(q, exact(2 * M_PI * turns)));
     assert_below(apart(q, exact(2 * M_PI * turns)), 2 * steps * EPS);
-    q = quat_turn(quat_of(1, 0, 0, 0), p3((preal)(0.2 * axis[0]), (preal)(0.2 * axis[1]), (preal)(0.2 * axis[2]))); /* one large step: the series */
+    /* one large step: the series */
+    q = quat_turn(quat_of(1, 0, 0, 0),
+        p3((preal)(0.2 * axis[0]), (preal)(0.2 * axis[1]), (preal)(0.2 * axis[2])));
     assert_below(apart(q, exact(0.2)), 3 * EPS);
 }
 
@@ -73,10 +84,12 @@ struct top {
     pvec3 w;
 };
 
-/* A body with isotropic inertia whose three axes are drawn to fixed directions: its angular acceleration depends on the attitude. */
+/* A body with isotropic inertia whose three axes are drawn to fixed directions: its angular
+ * acceleration depends on the attitude. */
 static pvec3 pull(struct quat q)
 {
-    pvec3 a = p3_cross(quat_rotate(q, p3(1, 0, 0)), p3((preal)-0.5, 2, 1)), b = p3_cross(quat_rotate(q, p3(0, 1, 0)), p3(1, (preal)0.3, 2));
+    pvec3 a = p3_cross(quat_rotate(q, p3(1, 0, 0)), p3((preal)-0.5, 2, 1)),
+          b = p3_cross(quat_rotate(q, p3(0, 1, 0)), p3(1, (preal)0.3, 2));
     return p3_add(a, b);
 }
 
@@ -104,9 +117,13 @@ static void step_rkn4(struct top *t, double dt, enum update update)
     const preal d = (preal)dt, in_stages = update == RKN4, at_end = update != RKN4_BARE;
     pvec3 w = t->w, none = p3(0, 0, 0);
     pvec3 k1 = pull(t->q);
-    pvec3 to_2 = quat_rkn4(p3_fma(d * d / 8, k1, p3_scale(d / 2, w)), w, in_stages > 0 ? k1 : none, d / 2), k2 = pull(quat_turn(t->q, to_2));
-    pvec3 to_3 = quat_rkn4(p3_fma(d * d / 2, k2, p3_scale(d, w)), w, in_stages > 0 ? k2 : none, d), k3 = pull(quat_turn(t->q, to_3));
-    pvec3 end = quat_rkn4(p3_fma(d * d / 6, p3_fma(2, k2, k1), p3_scale(d, w)), w, at_end > 0 ? k2 : none, d);
+    pvec3 to_2 = quat_rkn4(
+              p3_fma(d * d / 8, k1, p3_scale(d / 2, w)), w, in_stages > 0 ? k1 : none, d / 2),
+          k2 = pull(quat_turn(t->q, to_2));
+    pvec3 to_3 = quat_rkn4(p3_fma(d * d / 2, k2, p3_scale(d, w)), w, in_stages > 0 ? k2 : none, d),
+          k3 = pull(quat_turn(t->q, to_3));
+    pvec3 end = quat_rkn4(
+        p3_fma(d * d / 6, p3_fma(2, k2, k1), p3_scale(d, w)), w, at_end > 0 ? k2 : none, d);
     t->q = quat_turn(t->q, end);
     t->w = p3_fma(d / 6, p3_add(p3_fma(4, k2, k1), k3), w);
 }
@@ -114,7 +131,8 @@ static void step_rkn4(struct top *t, double dt, enum update update)
 static struct top tumble(enum update update, int steps)
 {
     struct top t = {{.w = 1}, {1, (preal)-0.7, (preal)0.5}};
-    for (int k = 0; k < steps; k++) (update <= RK4_WRONG ? step_rk4 : step_rkn4)(&t, 2.0 / steps, update);
+    for (int k = 0; k < steps; k++)
+        (update <= RK4_WRONG ? step_rk4 : step_rkn4)(&t, 2.0 / steps, update);
     return t;
 }
 
@@ -171,6 +189,7 @@ static void orders(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(columns), cmocka_unit_test(several_turns), cmocka_unit_test(orders)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(columns), cmocka_unit_test(several_turns), cmocka_unit_test(orders)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -13,10 +13,14 @@ static void rows(void **state)
     const vec3 plus = v3(2, 4, 6), minus = v3(-2, -4, -6), none = v3(0, 0, 0);
     const int both = 3, lower = 1, upper = 2;
     (void)state;
-    assert_true(stress_row(plus, minus, 0, both, 0, 1).y == 4 && stress_row(plus, minus, 0, both, 1, 1).y == 4);
-    assert_true(stress_row(plus, none, 0, upper, 0, 1).y == 2 && stress_row(plus, none, 0, upper, 1, 1).y == 4);
-    assert_true(stress_row(none, minus, 0, lower, 0, 1).z == 3 && stress_row(none, minus, 0, lower, 1, 1).z == 6);
-    assert_true(stress_row(plus, none, 1, upper << 2, 1, 0.25).x == 0.5 && stress_row(plus, none, 2, upper << 4, 1, 0.25).x == 0.5);
+    assert_true(stress_row(plus, minus, 0, both, 0, 1).y == 4 &&
+                stress_row(plus, minus, 0, both, 1, 1).y == 4);
+    assert_true(stress_row(plus, none, 0, upper, 0, 1).y == 2 &&
+                stress_row(plus, none, 0, upper, 1, 1).y == 4);
+    assert_true(stress_row(none, minus, 0, lower, 0, 1).z == 3 &&
+                stress_row(none, minus, 0, lower, 1, 1).z == 6);
+    assert_true(stress_row(plus, none, 1, upper << 2, 1, 0.25).x == 0.5 &&
+                stress_row(plus, none, 2, upper << 4, 1, 0.25).x == 0.5);
 }
 
 /* An axis without faces takes the shear of the other axis whole. */
@@ -27,7 +31,8 @@ static void one_layer(void **state)
     (void)state;
     assert_true(s.xx == 1 && s.yy == 5 && s.zz == 0 && s.xy == 3 && s.zx == 3 && s.yz == 6);
     assert_true(s.skew.x == 0 && s.skew.y == 0 && s.skew.z == -1);
-    assert_true(full.zx == (real)1.5 && full.yz == 3 && full.skew.x == 3 && full.skew.y == (real)-1.5);
+    assert_true(
+        full.zx == (real)1.5 && full.yz == 3 && full.skew.x == 3 && full.skew.y == (real)-1.5);
 }
 
 static void von_mises(void **state)
@@ -47,7 +52,8 @@ static void von_mises(void **state)
         assert_near(t.xx + t.yy + t.zz, s.xx + s.yy + s.zz, 1e-14);
         assert_near(v3_dot(t.skew, t.skew), 0, 1e-28);
         /* Q^T S Q by rows: what cells report of a uniform stress after they turned */
-        struct stress_rows turned = {v3_of_p3(quat_unrotate(q, p3_of_v3(there.x))), v3_of_p3(quat_unrotate(q, p3_of_v3(there.y))),
+        struct stress_rows turned = {v3_of_p3(quat_unrotate(q, p3_of_v3(there.x))),
+            v3_of_p3(quat_unrotate(q, p3_of_v3(there.y))),
             v3_of_p3(quat_unrotate(q, p3_of_v3(there.z)))};
         struct stress_rows same = stress_in_cell(there, q);
         assert_memory_equal(&turned, &same, sizeof same);
@@ -56,6 +62,7 @@ static void von_mises(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(rows), cmocka_unit_test(one_layer), cmocka_unit_test(von_mises)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rows), cmocka_unit_test(one_layer), cmocka_unit_test(von_mises)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

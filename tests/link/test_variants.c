@@ -1,5 +1,5 @@
-/* What one link does to the last bit, in every precision: features in or out, the three axes, opposite forces; to rounding: angular momentum, and
- * the link seen from its other end. */
+/* What one link does to the last bit, in every precision: features in or out, the three axes,
+ * opposite forces; to rounding: angular momentum, and the link seen from its other end. */
 #include "link_variant.h"
 #include "tests/limit/limit_test.h"
 
@@ -30,7 +30,8 @@ static struct link_cell any_cell(struct quat start)
 static struct variant_input any_link(struct features f)
 {
     struct variant_input in;
-    struct quat start = quat_turn(quat_of((preal)0.5, (preal)0.1, (preal)-0.7, (preal)0.5), p3_of_v3(any3(0.1)));
+    struct quat start =
+        quat_turn(quat_of((preal)0.5, (preal)0.1, (preal)-0.7, (preal)0.5), p3_of_v3(any3(0.1)));
     double share = f.shear ? uniform(0.5, 1.5) : 1;
     in.axis = (int)uniform(0, 3);
     in.lower = any_cell(start);
@@ -52,7 +53,8 @@ static struct variant_input any_link(struct features f)
 static void assert_same(vec3 a, vec3 b)
 {
     if (!(a.x == b.x && a.y == b.y && a.z == b.z))
-        fail_msg("(%a, %a, %a) is not (%a, %a, %a)", (double)a.x, (double)a.y, (double)a.z, (double)b.x, (double)b.y, (double)b.z);
+        fail_msg("(%a, %a, %a) is not (%a, %a, %a)", (double)a.x, (double)a.y, (double)a.z,
+            (double)b.x, (double)b.y, (double)b.z);
 }
 
 static void check_variant(variant_link *all, variant_link *bare, struct features f)
@@ -71,7 +73,8 @@ static void check_variant(variant_link *all, variant_link *bare, struct features
 static void unused_features_leave_the_bits(void **state)
 {
     (void)state;
-    check_variant(small_all, small_bare, (struct features){.shear = 1, .twist = 1}); /* they cost nothing there */
+    /* they cost nothing there */
+    check_variant(small_all, small_bare, (struct features){.shear = 1, .twist = 1});
     check_variant(small_all, small_volume, (struct features){.volume = 1, .shear = 1, .twist = 1});
     check_variant(small_all, small_damped, (struct features){.damped = 1, .shear = 1, .twist = 1});
     check_variant(turn_all, turn_bare, (struct features){0});
@@ -165,13 +168,15 @@ static void other_end(void **state)
         back.p_i = in.p_j;
         back.p_j = in.p_i;
         struct variant_output a = law[k % 2](&in), b = law[k % 2](&back);
-        vec3 f = v3_of_p3(half_turn(p3_of_v3(b.upper.force), in.axis)), t = v3_of_p3(half_turn(p3_of_v3(b.upper.torque), in.axis));
+        vec3 f = v3_of_p3(half_turn(p3_of_v3(b.upper.force), in.axis)),
+             t = v3_of_p3(half_turn(p3_of_v3(b.upper.torque), in.axis));
         assert_below(size(v3_sub(f, a.lower.force)), 30 * EPS);
         assert_below(size(v3_sub(t, a.lower.torque)), 30 * EPS);
     }
 }
 
-/* Strain of a rigid turn: what a displacement form leaves of it, over the angle, is some units in the last place. */
+/* Strain of a rigid turn: what a displacement form leaves of it, over the angle, is some units in
+ * the last place. */
 static void a_rigid_turn_leaves_no_strain(void **state)
 {
     (void)state;
@@ -193,7 +198,8 @@ static void a_rigid_turn_leaves_no_strain(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(unused_features_leave_the_bits), cmocka_unit_test(axes_have_the_same_bits),
-        cmocka_unit_test(momenta), cmocka_unit_test(other_end), cmocka_unit_test(a_rigid_turn_leaves_no_strain)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(unused_features_leave_the_bits),
+        cmocka_unit_test(axes_have_the_same_bits), cmocka_unit_test(momenta),
+        cmocka_unit_test(other_end), cmocka_unit_test(a_rigid_turn_leaves_no_strain)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

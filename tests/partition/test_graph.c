@@ -1,4 +1,5 @@
-/* Graphs whose best cuts are known: grids, paths, pieces apart; unlike shares and weights; what METIS itself would not bear. */
+/* Graphs whose best cuts are known: grids, paths, pieces apart; unlike shares and weights; what
+ * METIS itself would not bear. */
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -24,7 +25,8 @@ static struct made *grid(const int *side)
     struct made *m = calloc(1, sizeof *m);
     int n = side[0] * side[1] * side[2], n_edge = 0;
     for (int v = 0; v < n; v++) {
-        int at[3] = {v % side[0], v / side[0] % side[1], v / (side[0] * side[1])}, step[3] = {1, side[0], side[0] * side[1]};
+        int at[3] = {v % side[0], v / side[0] % side[1], v / (side[0] * side[1])},
+            step[3] = {1, side[0], side[0] * side[1]};
         m->weight[v] = 1;
         for (int a = 0; a < 3; a++)
             for (int d = -1; d <= 1; d += 2) {
@@ -42,7 +44,8 @@ static int64_t cut_of(const struct made *m)
 {
     int64_t cut = 0;
     for (int v = 0; v < m->graph.n; v++)
-        for (int k = m->begin[v]; k < m->begin[v + 1]; k++) cut += m->part[m->to[k]] != m->part[v] ? m->link[k] : 0;
+        for (int k = m->begin[v]; k < m->begin[v + 1]; k++)
+            cut += m->part[m->to[k]] != m->part[v] ? m->link[k] : 0;
     return cut / 2;
 }
 
@@ -63,7 +66,8 @@ static void run(struct made *m, int n_part, const int64_t *share, int64_t *sum)
 
 static const int64_t equal[128] = {[0 ... 127] = 1};
 
-/* 16^3 into 2, 4, 8: parts of equal size within a hundredth, and a cut no worse than half as much again as that by planes. */
+/* 16^3 into 2, 4, 8: parts of equal size within a hundredth, and a cut no worse than half as much
+ * again as that by planes. */
 static void grid_of_a_power_of_two(void **state)
 {
     (void)state;
@@ -73,7 +77,8 @@ static void grid_of_a_power_of_two(void **state)
         struct made *m = grid((int[]){16, 16, 16});
         int n_part = 2 << k;
         run(m, n_part, equal, sum);
-        for (int p = 0; p < n_part; p++) assert_in_range(sum[p], 4096 / n_part * 99 / 100, 4096 / n_part * 102 / 100);
+        for (int p = 0; p < n_part; p++)
+            assert_in_range(sum[p], 4096 / n_part * 99 / 100, 4096 / n_part * 102 / 100);
         assert_in_range(cut_of(m), planes[k] * 9 / 10, planes[k] * 3 / 2);
         free(m);
     }
@@ -87,7 +92,8 @@ static void path(void **state)
     struct made *m = grid((int[]){800, 1, 1});
     for (int n_part = 2; n_part <= 8; n_part++) {
         run(m, n_part, equal, sum);
-        for (int p = 0; p < n_part; p++) assert_in_range(sum[p], 800 / n_part * 97 / 100, 800 / n_part * 103 / 100 + 1);
+        for (int p = 0; p < n_part; p++)
+            assert_in_range(sum[p], 800 / n_part * 97 / 100, 800 / n_part * 103 / 100 + 1);
         assert_in_range(cut_of(m), n_part - 1, n_part + 1);
     }
     free(m);
@@ -102,7 +108,9 @@ static void shares(void **state)
     struct made *m = grid((int[]){20, 20, 5});
     for (int v = 0; v < 2000; v++) all += m->weight[v] = 2000000 + 1000 * (v % 7) * (v % 11);
     run(m, 3, share, sum);
-    for (int p = 0; p < 3; p++) assert_in_range(sum[p], all / 1000 * share[p] * 97 / 100, all / 1000 * share[p] * 103 / 100);
+    for (int p = 0; p < 3; p++)
+        assert_in_range(
+            sum[p], all / 1000 * share[p] * 97 / 100, all / 1000 * share[p] * 103 / 100);
     assert_true(all > INT32_MAX);
     free(m);
 }
@@ -130,7 +138,8 @@ static void apart(void **state)
     free(m);
 }
 
-/* One part, no vertices, fewer vertices than parts, as many, a few more: nobody without, and nothing dies. */
+/* One part, no vertices, fewer vertices than parts, as many, a few more: nobody without, and
+ * nothing dies. */
 static void tiny(void **state)
 {
     (void)state;
@@ -171,17 +180,21 @@ static void names_that_move_little(void **state)
 {
     (void)state;
     int name[4];
-    graph_names(4, (int64_t[]){0, 9, 1, 0, /**/ 7, 8, 0, 0, /**/ 0, 0, 0, 0, /**/ 0, 0, 0, 5}, name);
+    graph_names(
+        4, (int64_t[]){0, 9, 1, 0, /**/ 7, 8, 0, 0, /**/ 0, 0, 0, 0, /**/ 0, 0, 0, 5}, name);
     assert_memory_equal(name, ((int[]){1, 0, 2, 3}), sizeof name);
     graph_names(4, (int64_t[16]){0}, name);
     assert_memory_equal(name, ((int[]){0, 1, 2, 3}), sizeof name);
-    graph_names(4, (int64_t[]){0, 0, 0, 3, /**/ 0, 0, 0, 4, /**/ 0, 2, 0, 0, /**/ 0, 0, 0, 0}, name);
+    graph_names(
+        4, (int64_t[]){0, 0, 0, 3, /**/ 0, 0, 0, 4, /**/ 0, 2, 0, 0, /**/ 0, 0, 0, 0}, name);
     assert_memory_equal(name, ((int[]){0, 3, 1, 2}), sizeof name);
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(grid_of_a_power_of_two), cmocka_unit_test(path), cmocka_unit_test(shares),
-        cmocka_unit_test(apart), cmocka_unit_test(tiny), cmocka_unit_test(signals_are_left_alone), cmocka_unit_test(names_that_move_little)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(grid_of_a_power_of_two),
+        cmocka_unit_test(path), cmocka_unit_test(shares), cmocka_unit_test(apart),
+        cmocka_unit_test(tiny), cmocka_unit_test(signals_are_left_alone),
+        cmocka_unit_test(names_that_move_little)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* Leaves of a fine tree dealt out to the ranks: a grid of points with six neighbours each, of which every rank has its own. */
+/* Leaves of a fine tree dealt out to the ranks: a grid of points with six neighbours each, of which
+ * every rank has its own. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,7 +13,8 @@ static double x[N][3];
 static int begin[N + 1], to[6 * N], leaf[N];
 static int64_t weight[N];
 
-/* Points v % stride == first of the grid come first, as this rank's; the others behind them, as its ghosts. Returns how many are its own. */
+/* Points v % stride == first of the grid come first, as this rank's; the others behind them, as its
+ * ghosts. Returns how many are its own. */
 static int make(int first, int stride)
 {
     static int number[N], grid[N];
@@ -25,7 +27,8 @@ static int make(int first, int stride)
             }
     n = 0;
     for (int k = 0; k < N; k++) {
-        int v = grid[k], at[3] = {v % SIDE, v / SIDE % SIDE, v / (SIDE * SIDE)}, step[3] = {1, SIDE, SIDE * SIDE};
+        int v = grid[k], at[3] = {v % SIDE, v / SIDE % SIDE, v / (SIDE * SIDE)},
+            step[3] = {1, SIDE, SIDE * SIDE};
         for (int a = 0; a < 3; a++) x[k][a] = at[a] + 1e-3 * ((7 * v + a) % 13); /* no ties */
         if (v % stride != first) continue;
         n++;
@@ -41,7 +44,8 @@ static int make(int first, int stride)
     return n;
 }
 
-/* Deals the grid out and checks that every rank gets its share of the work, pairs of two ranks counted on both, within one leaf of the smallest. */
+/* Deals the grid out and checks that every rank gets its share of the work, pairs of two ranks
+ * counted on both, within one leaf of the smallest. */
 static void deal(const struct comm *comm, int stride, const int64_t *share)
 {
     int64_t shares = 0, least = INT64_MAX;
@@ -50,8 +54,10 @@ static void deal(const struct comm *comm, int stride, const int64_t *share)
         shares += own;
         least = own < least ? own : least;
     }
-    int n = comm->rank < stride ? make(comm->rank, stride) : 0, n_leaf = graph_leaves_wanted(comm, N);
-    int *owner = calloc((size_t)n_leaf, sizeof *owner), *first = calloc((size_t)n_leaf, sizeof *first);
+    int n = comm->rank < stride ? make(comm->rank, stride) : 0,
+        n_leaf = graph_leaves_wanted(comm, N);
+    int *owner = calloc((size_t)n_leaf, sizeof *owner),
+        *first = calloc((size_t)n_leaf, sizeof *first);
     int64_t *work = calloc((size_t)comm->n_rank, sizeof *work), n_all = n, n_stay = 0;
     struct rcb *tree = rcb_create(comm, n_leaf, NULL, x[0], weight, n);
     for (int k = 0; k < N; k++) leaf[k] = rcb_owner(tree, x[k]);

@@ -1,5 +1,6 @@
-/* Recursive bisection: balance, the same tree for any distribution of the points, the first cut against brute force, and the awkward inputs:
- * coordinates that tie, fewer points than parts, none; parts of unlike shares, leaves with owners. */
+/* Recursive bisection: balance, the same tree for any distribution of the points, the first cut
+ * against brute force, and the awkward inputs: coordinates that tie, fewer points than parts, none;
+ * parts of unlike shares, leaves with owners. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,8 +27,10 @@ static struct cloud *random_cloud(int n, const double size[3], int max_weight, u
     struct cloud *c = calloc(1, sizeof *c);
     c->n = n;
     for (int i = 0; i < n; i++) {
-        for (int a = 0; a < 3; a++) c->x[i][a] = size[a] * (uniform(seed + (uint64_t)(4 * i + a)) - 0.5);
-        c->weight[i] = 1 + (int64_t)(mpi_check_random(seed + (uint64_t)(4 * i + 3)) % (uint64_t)max_weight);
+        for (int a = 0; a < 3; a++)
+            c->x[i][a] = size[a] * (uniform(seed + (uint64_t)(4 * i + a)) - 0.5);
+        c->weight[i] =
+            1 + (int64_t)(mpi_check_random(seed + (uint64_t)(4 * i + 3)) % (uint64_t)max_weight);
     }
     return c;
 }
@@ -41,7 +44,8 @@ static int home(int spread, int i, int n, int n_rank)
     return spread == 2 ? block : n_rank - 1 - block;
 }
 
-static struct rcb *cut_shares(const struct comm *comm, const struct cloud *c, int n_part, const int64_t *share, int spread)
+static struct rcb *cut_shares(
+    const struct comm *comm, const struct cloud *c, int n_part, const int64_t *share, int spread)
 {
     static double x[MAX_POINTS][3];
     static int64_t weight[MAX_POINTS];
@@ -80,8 +84,10 @@ static void check_tree(const struct rcb *rcb, int n_part)
 static void check_same(const struct rcb *a, const struct rcb *b)
 {
     size_t n = (size_t)a->n_node;
-    CHECK(a->n_node == b->n_node && !memcmp(a->axis, b->axis, n * sizeof(int)) && !memcmp(a->cut, b->cut, n * sizeof(double)));
-    CHECK(!memcmp(a->left, b->left, n * sizeof(int)) && !memcmp(a->right, b->right, n * sizeof(int)));
+    CHECK(a->n_node == b->n_node && !memcmp(a->axis, b->axis, n * sizeof(int)) &&
+          !memcmp(a->cut, b->cut, n * sizeof(double)));
+    CHECK(
+        !memcmp(a->left, b->left, n * sizeof(int)) && !memcmp(a->right, b->right, n * sizeof(int)));
 }
 
 /* The tree of rank 0, so that all ranks can be compared with it. */
@@ -155,7 +161,8 @@ static void ties(const struct comm *comm)
     struct cloud *c = random_cloud(1000, (double[3]){1, 2, 0.5}, 1, 77);
     struct rcb *rcb;
 
-    for (int i = 0; i < c->n; i++) c->x[i][1] = 0.25; /* a plane y = const: cut along x and z only */
+    /* a plane y = const: cut along x and z only */
+    for (int i = 0; i < c->n; i++) c->x[i][1] = 0.25;
     rcb = cut(comm, c, 8, 1);
     check_tree(rcb, 8);
     sums(rcb, c, 8, sum);
@@ -163,14 +170,16 @@ static void ties(const struct comm *comm)
     for (int k = 0; k < 7; k++) CHECK(rcb->axis[k] != 1);
     rcb_free(rcb);
 
-    for (int i = 0; i < 950; i++) c->x[i][0] = -10; /* x is by far the longest side, but most points share theirs: z has to do */
+    /* x is by far the longest side, but most points share theirs: z has to do */
+    for (int i = 0; i < 950; i++) c->x[i][0] = -10;
     for (int i = 950; i < c->n; i++) c->x[i][0] = 10;
     rcb = cut(comm, c, 2, 1);
     sums(rcb, c, 2, sum);
     CHECK(rcb->axis[0] == 2 && sum[0] == 500 && sum[1] == 500);
     rcb_free(rcb);
 
-    for (int i = 0; i < c->n; i++) c->x[i][0] = c->x[i][1] = c->x[i][2] = i % 2 ? 0.0 : -0.0; /* one place */
+    /* one place */
+    for (int i = 0; i < c->n; i++) c->x[i][0] = c->x[i][1] = c->x[i][2] = i % 2 ? 0.0 : -0.0;
     rcb = cut(comm, c, 5, 1);
     check_tree(rcb, 5);
     sums(rcb, c, 5, sum);
@@ -179,7 +188,8 @@ static void ties(const struct comm *comm)
     CHECK(owners == 1 && rcb_owner(rcb, c->x[0]) == rcb_owner(rcb, c->x[1]));
     rcb_free(rcb);
 
-    for (int i = 0; i < c->n; i++) /* 10 x 10 x 10, of unlike sides: cut in halves along x, then y, then z */
+    /* 10 x 10 x 10, of unlike sides: cut in halves along x, then y, then z */
+    for (int i = 0; i < c->n; i++)
         for (int a = 0, k = i; a < 3; a++, k /= 10) c->x[i][a] = (3 - a) * 0.001 * (k % 10 - 20);
     rcb = cut(comm, c, 8, 1);
     sums(rcb, c, 8, sum);
@@ -187,7 +197,9 @@ static void ties(const struct comm *comm)
     CHECK(rcb->axis[0] == 0 && fabs(rcb->cut[0] - 3 * 0.001 * (4.5 - 20)) < 1e-12);
     rcb_free(rcb);
 
-    c->n = 369; /* 41 planes of 9 points along the long x, y irregular: 2.4 % off along x is good enough, no cut across */
+    /* 41 planes of 9 points along the long x, y irregular: 2.4 % off along x is good enough, no cut
+     * across */
+    c->n = 369;
     for (int i = 0; i < c->n; i++) {
         c->x[i][0] = i / 9;
         c->x[i][1] = uniform((uint64_t)i);
@@ -217,7 +229,8 @@ static void few(const struct comm *comm)
         }
 }
 
-/* Every part has its share within the weight of one point; the same share for all is the same tree as no shares. */
+/* Every part has its share within the weight of one point; the same share for all is the same tree
+ * as no shares. */
 static void shares(const struct comm *comm, const struct cloud *c)
 {
     static const int64_t share[7] = {1000, 1, 400, 2, 50, 3, 900};
@@ -245,7 +258,8 @@ static void owned_leaves(const struct comm *comm, const struct cloud *c)
     static const int owner[6] = {3, 0, 3, 1, 0, 2};
     struct rcb *leaves = cut(comm, c, 6, 1), *owned = cut(comm, c, 6, 1);
     rcb_assign(owned, owner);
-    for (int i = 0; i < c->n; i++) CHECK(rcb_owner(owned, c->x[i]) == owner[rcb_owner(leaves, c->x[i])]);
+    for (int i = 0; i < c->n; i++)
+        CHECK(rcb_owner(owned, c->x[i]) == owner[rcb_owner(leaves, c->x[i])]);
     rcb_free(leaves);
     rcb_free(owned);
 }
@@ -256,22 +270,28 @@ static void imbalance(const struct comm *comm)
     double mean = 0;
     struct partition_quality q = {0};
     CHECK(partition_imbalance((int64_t[]){1, 2, 3, 4}, NULL, 4) == 4 / 2.5 - 1);
-    CHECK(partition_imbalance((int64_t[]){7, 7, 7}, NULL, 3) == 0 && partition_imbalance((int64_t[]){0, 0}, NULL, 2) == 0);
+    CHECK(partition_imbalance((int64_t[]){7, 7, 7}, NULL, 3) == 0 &&
+          partition_imbalance((int64_t[]){0, 0}, NULL, 2) == 0);
     CHECK(partition_imbalance((int64_t[]){12, 0, 0}, NULL, 3) == 2);
     CHECK(partition_imbalance((int64_t[]){10, 20, 30}, (int64_t[]){1, 2, 3}, 3) == 0);
-    CHECK(fabs(partition_imbalance((int64_t[]){30, 30}, (int64_t[]){1, 2}, 2) - 0.5) < 1e-15); /* 30 where 20 are due */
+    /* 30 where 20 are due */
+    CHECK(fabs(partition_imbalance((int64_t[]){30, 30}, (int64_t[]){1, 2}, 2) - 0.5) < 1e-15);
     for (int r = 0; r < n; r++) mean += (r + 1.0) / n;
-    partition_quality_add(&q, comm, &(struct partition_part){comm->rank + 1, 2 * comm->rank, comm->rank}, NULL);
+    partition_quality_add(
+        &q, comm, &(struct partition_part){comm->rank + 1, 2 * comm->rank, comm->rank}, NULL);
     partition_quality_add(&q, comm, &(struct partition_part){5, 1, 1}, NULL);
-    CHECK(q.n == 2 && fabs(q.imbalance_max - (n / mean - 1)) < 1e-15 && q.imbalance == 0 && q.imbalance_sum == q.imbalance_max);
-    CHECK(q.cut_sum == n * (n - 1) + n && q.neighbours_max == (n > 2 ? n - 1 : 1) && fabs(q.neighbours_sum - ((n - 1) / 2.0 + 1)) < 1e-12);
+    CHECK(q.n == 2 && fabs(q.imbalance_max - (n / mean - 1)) < 1e-15 && q.imbalance == 0 &&
+          q.imbalance_sum == q.imbalance_max);
+    CHECK(q.cut_sum == n * (n - 1) + n && q.neighbours_max == (n > 2 ? n - 1 : 1) &&
+          fabs(q.neighbours_sum - ((n - 1) / 2.0 + 1)) < 1e-12);
 }
 
 int main(int argc, char **argv)
 {
     static const int n_part[] = {1, 2, 3, 5, 8, 23, 128};
     struct comm *comm = comm_create(&argc, &argv);
-    struct cloud *even = random_cloud(1013, (double[3]){0.3, 0.1, 1.0}, 1, 1), *heavy = random_cloud(3000, (double[3]){1, 5, 2}, 9, 99);
+    struct cloud *even = random_cloud(1013, (double[3]){0.3, 0.1, 1.0}, 1, 1),
+                 *heavy = random_cloud(3000, (double[3]){1, 5, 2}, 9, 99);
     for (size_t k = 0; k < sizeof n_part / sizeof *n_part; k++) {
         balanced(comm, even, n_part[k]);
         balanced(comm, heavy, n_part[k]);

@@ -1,4 +1,5 @@
-/* A small frame whose numbers follow from the global id alone: rank r holds (3 + 2 r) elements, rank 1 none. */
+/* A small frame whose numbers follow from the global id alone: rank r holds (3 + 2 r) elements,
+ * rank 1 none. */
 #ifndef FRAME_FIXTURE_H
 #define FRAME_FIXTURE_H
 
@@ -45,16 +46,21 @@ static inline void fixture_fill(struct fixture *f, const struct comm *comm)
             f->velocity[i][k] = fixture_velocity(begin + i, k);
         }
     }
-    f->point[0] = (struct column){"position", "m", "centre of the element", COLUMN_F64, 3, f->position};
-    f->point[1] = (struct column){"velocity", "m/s", "velocity of the centre", COLUMN_F64, 3, f->velocity};
+    f->point[0] =
+        (struct column){"position", "m", "centre of the element", COLUMN_F64, 3, f->position};
+    f->point[1] =
+        (struct column){"velocity", "m/s", "velocity of the centre", COLUMN_F64, 3, f->velocity};
     f->point[2] = (struct column){"radius", "m", "radius", COLUMN_F32, 1, f->radius};
     f->point[3] = (struct column){"id", "1", "global id", COLUMN_I64, 1, f->gid};
-    f->point[4] = (struct column){"coordination", "1", "contacts of the element", COLUMN_I32, 1, f->coordination};
+    f->point[4] = (struct column){
+        "coordination", "1", "contacts of the element", COLUMN_I32, 1, f->coordination};
     f->element[0] = f->point[3];
     f->element[1] = f->point[0];
     f->element[2] = f->point[1];
-    f->element[3] = (struct column){"displacement", "m", "since the lists were built, in µm steps", COLUMN_F64, 3, f->velocity};
-    f->pair[0] = (struct column){"partner", "1", "global id of the second element", COLUMN_I64, 1, f->gid};
+    f->element[3] = (struct column){
+        "displacement", "m", "since the lists were built, in µm", COLUMN_F64, 3, f->velocity};
+    f->pair[0] =
+        (struct column){"partner", "1", "global id of the second element", COLUMN_I64, 1, f->gid};
     f->state[0] = (struct table){"elements", n, f->element, 4};
     f->state[1] = (struct table){"pairs", 0, f->pair, 1};
     f->scalar[0] = (struct frame_scalar){"dt", COLUMN_F64, 1e-5, 0};

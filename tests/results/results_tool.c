@@ -1,6 +1,7 @@
 /* What the python tests of this folder run, alone or under mpirun:
  *   frame DIR [N]      write the frame of frame_fixture.h; files may not grow beyond N bytes
- *   write FILE N       write one column without asking for the room first, files may not grow beyond N bytes on rank 0 (no limit: 0)
+ *   write FILE N       write one column without asking for the room first, files may not grow
+ *     beyond N bytes on rank 0 (no limit: 0)
  *   check FILE         print what is wrong with a frame, or nothing
  *   folder DIR SCENE [--force]   make the folder of results
  *   record DIR         a run.json, a log and a time series */
@@ -51,7 +52,8 @@ static void write_column(const struct comm *comm, int n, char **arg)
 static void folder(const struct comm *comm, int n, char **arg)
 {
     const char *const measure[] = {"outflow"};
-    struct output_request request = {arg[0], n > 2 && !strcmp(arg[2], "--force"), arg[1], "title: resolved\nmeasure: [{name: energy}]\n", measure, 1};
+    struct output_request request = {arg[0], n > 2 && !strcmp(arg[2], "--force"), arg[1],
+        "title: resolved\nmeasure: [{name: energy}]\n", measure, 1};
     output_dir_create(comm, &request);
 }
 
@@ -89,7 +91,8 @@ static void record(const struct comm *comm, const char *dir)
     log_attach(log, dir, false);
     log_print(log, "%d elements", 17);
     struct log_progress progress = {0, 1000, 0, 1e-2, 50000};
-    for (; progress.step <= progress.n_step; progress.step++, progress.time += 1e-5) log_progress(log, &progress);
+    for (; progress.step <= progress.n_step; progress.step++, progress.time += 1e-5)
+        log_progress(log, &progress);
     progress.step--;
     log_progress_end(log, &progress);
     log_free(log);

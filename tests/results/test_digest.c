@@ -1,4 +1,5 @@
-/* The digest against the two elements worked out in advance, and what it must and must not notice. */
+/* The digest against the two elements worked out in advance, and what it must and must not
+ * notice. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -18,24 +19,32 @@ static void test_known_elements(void **state)
     (void)state;
     int64_t n_nan = 0;
     char text[17];
-    assert_string_equal(digest_text(digest_of_rank(gid, 1, parts, 4, &n_nan), text), "824760a75253a07e");
-    assert_string_equal(digest_text(digest_of_rank(gid, 2, parts, 4, &n_nan), text), "b5232e7dedb2aacc");
-    const struct digest_part second[4] = {{x[1], 0, 3, 3}, {v[1], 0, 3, 3}, {q[1], 0, 4, 4}, {w[1], 0, 3, 3}};
-    assert_string_equal(digest_text(digest_of_rank(gid + 1, 1, second, 4, &n_nan), text), "32dbcdd69b5f0a4e");
+    assert_string_equal(
+        digest_text(digest_of_rank(gid, 1, parts, 4, &n_nan), text), "824760a75253a07e");
+    assert_string_equal(
+        digest_text(digest_of_rank(gid, 2, parts, 4, &n_nan), text), "b5232e7dedb2aacc");
+    const struct digest_part second[4] = {
+        {x[1], 0, 3, 3}, {v[1], 0, 3, 3}, {q[1], 0, 4, 4}, {w[1], 0, 3, 3}};
+    assert_string_equal(
+        digest_text(digest_of_rank(gid + 1, 1, second, 4, &n_nan), text), "32dbcdd69b5f0a4e");
     assert_int_equal(n_nan, 0);
-    assert_string_equal(digest_text(digest_of_rank(gid, 0, parts, 4, &n_nan), text), "0000000000000000");
+    assert_string_equal(
+        digest_text(digest_of_rank(gid, 0, parts, 4, &n_nan), text), "0000000000000000");
 }
 
-/* Separate arrays, padded vectors, vectors stored x, y, z, w: the same words in the same order are the same digest. */
+/* Separate arrays, padded vectors, vectors stored x, y, z, w: the same words in the same order are
+ * the same digest. */
 static void test_layout_does_not_matter(void **state)
 {
     (void)state;
-    double padded[2][4] = {{0, 0, 0, 9}, {0.005, 0, -0.0, 9}}, vx[2] = {1, 0}, vy[2] = {-0.5, 0}, vz[2] = {0.25, 0};
+    double padded[2][4] = {{0, 0, 0, 9}, {0.005, 0, -0.0, 9}}, vx[2] = {1, 0}, vy[2] = {-0.5, 0},
+           vz[2] = {0.25, 0};
     double xyzw[2][4] = {{0, 0, 0, 1}, {0, 0, 0, 1}};
-    const struct digest_part other[7] = {
-        {padded, 0, 3, 4}, {vx, 0, 1, 1}, {vy, 0, 1, 1}, {vz, 0, 1, 1}, {&xyzw[0][3], 0, 1, 4}, {xyzw, 0, 3, 4}, {w, 0, 3, 3}};
+    const struct digest_part other[7] = {{padded, 0, 3, 4}, {vx, 0, 1, 1}, {vy, 0, 1, 1},
+        {vz, 0, 1, 1}, {&xyzw[0][3], 0, 1, 4}, {xyzw, 0, 3, 4}, {w, 0, 3, 3}};
     int64_t n_nan = 0;
-    assert_true(digest_of_rank(gid, 2, other, 7, &n_nan) == digest_of_rank(gid, 2, parts, 4, &n_nan));
+    assert_true(
+        digest_of_rank(gid, 2, other, 7, &n_nan) == digest_of_rank(gid, 2, parts, 4, &n_nan));
 }
 
 static void test_order_of_storage_does_not_matter(void **state)
@@ -47,14 +56,17 @@ static void test_order_of_storage_does_not_matter(void **state)
     struct digest_part part[4];
     for (int p = 0; p < 4; p++) {
         int width = parts[p].width;
-        for (int i = 0; i < 2; i++) memcpy(swapped[p][1 - i], from[p] + i * width, (size_t)width * sizeof(double));
+        for (int i = 0; i < 2; i++)
+            memcpy(swapped[p][1 - i], from[p] + i * width, (size_t)width * sizeof(double));
         part[p] = (struct digest_part){swapped[p], 0, width, 4};
     }
     int64_t n_nan = 0;
-    assert_true(digest_of_rank(swapped_gid, 2, part, 4, &n_nan) == digest_of_rank(gid, 2, parts, 4, &n_nan));
+    assert_true(digest_of_rank(swapped_gid, 2, part, 4, &n_nan) ==
+                digest_of_rank(gid, 2, parts, 4, &n_nan));
     part[0].data = x; /* the positions of the two exchanged */
     part[0].stride = 3;
-    assert_true(digest_of_rank(swapped_gid, 2, part, 4, &n_nan) != digest_of_rank(gid, 2, parts, 4, &n_nan));
+    assert_true(digest_of_rank(swapped_gid, 2, part, 4, &n_nan) !=
+                digest_of_rank(gid, 2, parts, 4, &n_nan));
 }
 
 /* Floats by their own 32 bits: not the digest of the same values as doubles. */

@@ -1,4 +1,5 @@
-/* A frame on disk: what ParaView 5.11 asks for to the byte, the state that a run continues from, and nothing half done. Run on 1 to 3 ranks. */
+/* A frame on disk: what ParaView 5.11 asks for to the byte, the state that a run continues from,
+ * and nothing half done. Run on 1 to 3 ranks. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -44,11 +45,13 @@ static void read_all(hid_t file, const char *name, hid_t memory, int width, void
     H5Dclose(dataset);
 }
 
-/* `Type` must be 16 bytes of ASCII without a terminator: VTK 9.1 reads other forms too, ParaView 5.11 does not. */
+/* `Type` must be 16 bytes of ASCII without a terminator: VTK 9.1 reads other forms too, ParaView
+ * 5.11 does not. */
 static void test_type_is_16_ascii_bytes(void **state)
 {
     (void)state;
-    hid_t file = open_frame(), grid = H5Gopen2(file, "VTKHDF", H5P_DEFAULT), attribute = H5Aopen(grid, "Type", H5P_DEFAULT);
+    hid_t file = open_frame(), grid = H5Gopen2(file, "VTKHDF", H5P_DEFAULT),
+          attribute = H5Aopen(grid, "Type", H5P_DEFAULT);
     hid_t type = H5Aget_type(attribute), space = H5Aget_space(attribute);
     char text[17] = "";
     assert_int_equal(H5Tget_class(type), H5T_STRING);
@@ -77,7 +80,8 @@ static void test_parts_follow_ranks(void **state)
     int64_t count[8], offset[FIXTURE_LARGEST + 8], connectivity[FIXTURE_LARGEST];
     unsigned char types[FIXTURE_LARGEST];
     hid_t file = open_frame();
-    const char *const counts[] = {"VTKHDF/NumberOfPoints", "VTKHDF/NumberOfCells", "VTKHDF/NumberOfConnectivityIds", "democles/rows/elements"};
+    const char *const counts[] = {"VTKHDF/NumberOfPoints", "VTKHDF/NumberOfCells",
+        "VTKHDF/NumberOfConnectivityIds", "democles/rows/elements"};
     for (int k = 0; k < 4; k++) {
         read_all(file, counts[k], H5T_NATIVE_INT64, 1, count);
         for (int r = 0; r < comm->n_rank; r++) assert_int_equal(count[r], fixture_count(r));
@@ -168,7 +172,8 @@ static void test_shared_columns_are_links(void **state)
 {
     (void)state;
     hid_t file = open_frame();
-    const char *const name[][2] = {{"democles/elements/position", "VTKHDF/Points"}, {"democles/elements/velocity", "VTKHDF/PointData/velocity"},
+    const char *const name[][2] = {{"democles/elements/position", "VTKHDF/Points"},
+        {"democles/elements/velocity", "VTKHDF/PointData/velocity"},
         {"democles/elements/displacement", "VTKHDF/PointData/velocity"}};
     for (int k = 0; k < 3; k++) {
         H5O_info_t one, other;
@@ -191,13 +196,15 @@ static void test_whole_frame_passes_check(void **state)
     free(tmp);
 }
 
-/* Several H5Dwrite per column, as many as the fullest rank needs, give the same file content as one. */
+/* Several H5Dwrite per column, as many as the fullest rank needs, give the same file content as
+ * one. */
 static void write_in_pieces(void)
 {
     char *name = fail_format("%s/pieces.hdf", dir);
     struct h5_writer *writer = h5_create(comm, name, 0);
     writer->piece = 2 * 3 * sizeof(double); /* two rows */
-    h5_column(writer, writer->file, &fixture.point[0], h5_rows_of(comm, fixture.frame.points.n_row));
+    h5_column(
+        writer, writer->file, &fixture.point[0], h5_rows_of(comm, fixture.frame.points.n_row));
     h5_finish(writer);
     free(name);
 }
@@ -207,7 +214,8 @@ static void test_pieces(void **state)
     (void)state;
     double position[FIXTURE_LARGEST][3];
     char *name = fail_format("%s/pieces.hdf", dir);
-    hid_t file = H5Fopen(name, H5F_ACC_RDONLY, H5P_DEFAULT), dataset = H5Dopen2(file, "position", H5P_DEFAULT);
+    hid_t file = H5Fopen(name, H5F_ACC_RDONLY, H5P_DEFAULT),
+          dataset = H5Dopen2(file, "position", H5P_DEFAULT);
     uint64_t sum = 0, expected = 0;
     for (int part = 0; part < 3; part++) { /* in thirds */
         uint64_t mine;

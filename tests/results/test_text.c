@@ -1,4 +1,5 @@
-/* Numbers as text: doubles that read back to the same bits, JSON, durations; and the checksum of datasets. */
+/* Numbers as text: doubles that read back to the same bits, JSON, durations; and the checksum of
+ * datasets. */
 #include <float.h>
 #include <math.h>
 #include <setjmp.h>
@@ -33,7 +34,8 @@ static void test_numbers_read_back_to_the_same_bits(void **state)
     char text[SERIES_NUMBER_SIZE];
     uint64_t word = 1;
     const double extreme[] = {DBL_MAX, DBL_MIN, 5e-324, 9007199254740993.0, 1e23, -DBL_EPSILON};
-    for (size_t k = 0; k < sizeof extreme / sizeof *extreme; k++) assert_true(strtod(series_number(extreme[k], text), NULL) == extreme[k]);
+    for (size_t k = 0; k < sizeof extreme / sizeof *extreme; k++)
+        assert_true(strtod(series_number(extreme[k], text), NULL) == extreme[k]);
     for (int k = 0; k < 20000; k++) {
         double value, back;
         word = digest_mix(word + DIGEST_G);
@@ -102,7 +104,8 @@ static void test_durations(void **state)
     assert_string_equal(log_duration(HUGE_VAL, text), "?");
 }
 
-/* Parts of an array, summed with their begin, give the checksum of the whole; exchanged numbers give another. */
+/* Parts of an array, summed with their begin, give the checksum of the whole; exchanged numbers
+ * give another. */
 static void test_checksum_of_parts(void **state)
 {
     (void)state;
@@ -110,7 +113,9 @@ static void test_checksum_of_parts(void **state)
     for (int i = 0; i < 10; i++) a[i] = 1.0 / (i + 1);
     uint64_t whole = h5_check_sum(COLUMN_F64, a, 10, 0);
     for (int cut = 0; cut <= 10; cut++) {
-        assert_true(h5_check_sum(COLUMN_F64, a, cut, 0) + h5_check_sum(COLUMN_F64, a + cut, 10 - cut, cut) == whole);
+        assert_true(h5_check_sum(COLUMN_F64, a, cut, 0) +
+                        h5_check_sum(COLUMN_F64, a + cut, 10 - cut, cut) ==
+                    whole);
     }
     double kept = a[3];
     a[3] = a[4];

@@ -31,7 +31,8 @@ static inline int fixture_setup(void **state)
     return mkdtemp(f->folder) ? 0 : -1;
 }
 
-static inline int fixture_remove(const char *path, const struct stat *info, int type, struct FTW *at)
+static inline int fixture_remove(
+    const char *path, const struct stat *info, int type, struct FTW *at)
 {
     (void)info, (void)type, (void)at;
     return remove(path);
@@ -89,17 +90,22 @@ static inline struct scene *fixture_read(const struct fixture *f, const char *co
     return scene;
 }
 
-/* Reads the scene; it must give exactly these messages, each but those of --set with the folder before it. */
-static inline void fixture_expect(const struct fixture *f, const char *const *set, int n_set, const char *const *message, int n)
+/* Reads the scene; it must give exactly these messages, each but those of --set with the folder
+ * before it. */
+static inline void fixture_expect(
+    const struct fixture *f, const char *const *set, int n_set, const char *const *message, int n)
 {
     struct scene_errors errors = {0};
     struct scene *scene = scene_read(f->path, set, n_set, &errors);
     assert_null(scene);
     for (int k = 0; k < errors.n; k++) {
-        size_t skip = strncmp(errors.text[k], f->folder, strlen(f->folder)) == 0 ? strlen(f->folder) + 1 : 0;
+        size_t skip =
+            strncmp(errors.text[k], f->folder, strlen(f->folder)) == 0 ? strlen(f->folder) + 1 : 0;
         /* Paths of files stand within messages, too. */
         char *within = strstr(errors.text[k] + skip, f->folder);
-        if (within) memmove(within, within + strlen(f->folder) + 1, strlen(within + strlen(f->folder) + 1) + 1);
+        if (within)
+            memmove(
+                within, within + strlen(f->folder) + 1, strlen(within + strlen(f->folder) + 1) + 1);
         if (k < n) assert_string_equal(errors.text[k] + skip, message[k]);
         else print_error("one more: %s\n", errors.text[k]);
     }

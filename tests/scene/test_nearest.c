@@ -25,7 +25,8 @@ static void nearest_of_several(void **state)
     (void)state;
     const char *const name[] = {"law", "stiffness", "damping_ratio", "restitution", "attraction"};
     assert_string_equal(nearest_name("stifness", name, 5), "stiffness");
-    assert_string_equal(nearest_name("damping", (const char *const[]){"dampin", "dumping"}, 2), "dampin");
+    assert_string_equal(
+        nearest_name("damping", (const char *const[]){"dampin", "dumping"}, 2), "dampin");
     assert_string_equal(nearest_name("lwa", name, 5), "law");
     assert_null(nearest_name("colour", name, 5));
     assert_null(nearest_name("stiffness", name, 0));
@@ -43,7 +44,7 @@ static void nothing_in_common_is_not_near(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(distances), cmocka_unit_test(nearest_of_several), cmocka_unit_test(nothing_in_common_is_not_near)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(distances),
+        cmocka_unit_test(nearest_of_several), cmocka_unit_test(nothing_in_common_is_not_near)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -53,7 +53,8 @@ static void a_part(void **state)
     assert_non_null(strstr(text, "contacts[].normal.stiffness "));
     assert_null(strstr(text, "tangential"));
     free(text);
-    char *again = explain("contacts[0].normal", &stdout, true), *same = explain("contacts[].normal", &stdout, true);
+    char *again = explain("contacts[0].normal", &stdout, true),
+         *same = explain("contacts[].normal", &stdout, true);
     assert_string_equal(again, same);
     free(again);
     free(same);
@@ -63,9 +64,10 @@ static void one_key(void **state)
 {
     (void)state;
     char *text = explain("time.step", &stdout, true);
-    assert_string_equal(text, "key        type                  unit   default                 meaning\n"
-                              "time.step  number                s      auto                    "
-                              "time step; auto: safety times the rigorous limit [> 0]\n");
+    assert_string_equal(text,
+        "key        type                  unit   default                 meaning\n"
+        "time.step  number                s      auto                    "
+        "time step; auto: safety times the rigorous limit [> 0]\n");
     free(text);
 }
 
@@ -89,7 +91,8 @@ static void unknown_key_names_the_nearest(void **state)
 {
     (void)state;
     char *text = explain("contacts.normal.stifness", &stderr, false);
-    assert_string_equal(text, "democles: error: no key 'contacts.normal.stifness'; did you mean 'contacts.normal.stiffness'?\n");
+    assert_string_equal(text, "democles: error: no key 'contacts.normal.stifness'; did you mean "
+                              "'contacts.normal.stiffness'?\n");
     free(text);
     text = explain("xyzzy", &stderr, false);
     assert_string_equal(text, "democles: error: no key 'xyzzy'; `democles explain` lists all\n");

@@ -21,7 +21,8 @@ static void changes_values(void **state)
         "time.step=auto",
     };
     struct scene *s = read_with(*state, set, 7);
-    assert_true(s->time.end == 1 && s->time.step == 0 && s->contact[0].stiffness == 2000 && s->wall[1].remove_at == 0.2);
+    assert_true(s->time.end == 1 && s->time.step == 0 && s->contact[0].stiffness == 2000 &&
+                s->wall[1].remove_at == 0.2);
     assert_true(s->gravity[2] == -1.62 && s->output.n_field == 2 && s->group[0].count == 10);
     scene_free(s);
 }
@@ -30,7 +31,8 @@ static void finds_entries_by_name(void **state)
 {
     const char *const set[] = {"walls.gate.motion.remove_at=never", "measure.energy.every=2 ms"};
     struct scene *s = read_with(*state, set, 2);
-    assert_true(s->wall[1].remove_at == HUGE_VAL && s->measure[1].every == 2e-3 && s->measure[0].every == 1e-3);
+    assert_true(s->wall[1].remove_at == HUGE_VAL && s->measure[1].every == 2e-3 &&
+                s->measure[0].every == 1e-3);
     scene_free(s);
 }
 
@@ -58,8 +60,10 @@ static void creates_and_takes_away(void **state)
         "contacts[1].normal.restitution=1",
     };
     struct scene *s = read_with(*state, set, 7);
-    assert_true(s->wall[0].frequency == 50 && s->partition.threshold == 0.5 && s->contact[0].rolling == ROLLING_CDT);
-    assert_true(s->contact[0].binding_force == 0 && s->contact[1].damping_ratio == 0 && s->contact[1].restitution == 1);
+    assert_true(s->wall[0].frequency == 50 && s->partition.threshold == 0.5 &&
+                s->contact[0].rolling == ROLLING_CDT);
+    assert_true(s->contact[0].binding_force == 0 && s->contact[1].damping_ratio == 0 &&
+                s->contact[1].restitution == 1);
     scene_free(s);
 }
 
@@ -94,18 +98,22 @@ static void messages_name_the_option(void **state)
     const char *const message[] = {
         "--set time.end=1 mm: time.end: 'mm' is the unit of a length; expected a time, as in '1 s'",
         "--set tme.end=2: tme: unknown key; did you mean 'time'?",
-        "--set walls.gat.motion.remove_at=1: walls.gat: no entry of that name; did you mean 'gate'?",
+        "--set walls.gat.motion.remove_at=1: walls.gat: no entry of that name; did you mean "
+        "'gate'?",
         "--set walls[7].name=x: walls[7]: no such entry, there are [0] to [1]",
         "--set foo: expected KEY=VALUE",
         "--set =1: expected KEY=VALUE",
         "--set a..b=1: cannot read 'a..b' as a key like walls[1].motion.remove_at",
-        "--set contacts[0].normal.stifness=3: contacts[0].normal.stifness: unknown key; did you mean 'stiffness'?",
-        "--set measure[0].every=[1: measure[0].every: not valid YAML: did not find expected ',' or ']', while parsing a flow sequence (from line 1)",
+        "--set contacts[0].normal.stifness=3: contacts[0].normal.stifness: unknown key; did you "
+        "mean 'stiffness'?",
+        "--set measure[0].every=[1: measure[0].every: not valid YAML: did not find expected ',' "
+        "or ']', while parsing a flow sequence (from line 1)",
         "--set time.step.x=2: time.step.x: what it would be part of is a single value",
         "--set domain.box[0]=1: domain.box: the scene does not give this list; set it as a whole",
         "--set domain[0]=1: domain[0]: what it would be part of is no list",
         "--set gravity[3]=1: gravity[3]: no such entry, there are [0] to [2]",
-        "--set partition.method=grpah: partition.method: unknown word 'grpah'; did you mean 'graph'?",
+        "--set partition.method=grpah: partition.method: unknown word 'grpah'; did you mean "
+        "'graph'?",
     };
     fixture_expect(f, set, 14, message, 14);
 }
@@ -114,8 +122,9 @@ static void messages_name_the_option(void **state)
 static void file_and_option(void **state)
 {
     struct fixture *f = *state;
-    fixture_scene(f, "method: particles\ntime: {end: 1}\nmaterials: {m: {density: 0}}\n"
-                     "elements: [{name: e, material: m, file: bed.csv}]\ncontacts: [{between: [m, m]}]\n");
+    fixture_scene(f,
+        "method: particles\ntime: {end: 1}\nmaterials: {m: {density: 0}}\n"
+        "elements: [{name: e, material: m, file: bed.csv}]\ncontacts: [{between: [m, m]}]\n");
     const char *const set[] = {"time.end=0"};
     const char *const message[] = {
         "scene.yaml:3:26: materials.m.density: 0 is out of range: must be > 0",

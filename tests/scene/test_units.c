@@ -12,7 +12,8 @@ static double value_of(const char *text, enum unit_kind kind)
 {
     double value = -12345;
     char problem[256] = "";
-    if (!units_parse(text, kind, &value, problem, sizeof problem)) fail_msg("%s: %s", text, problem);
+    if (!units_parse(text, kind, &value, problem, sizeof problem))
+        fail_msg("%s: %s", text, problem);
     return value;
 }
 
@@ -91,11 +92,15 @@ static void wrong_kinds_are_named(void **state)
 {
     (void)state;
     assert_problem("5 mm", UNIT_TIME, "'mm' is the unit of a length; expected a time, as in '1 s'");
-    assert_problem("5 m", UNIT_STIFFNESS, "'m' is the unit of a length; expected a stiffness, as in '1 N/m'");
-    assert_problem("5 m/s2", UNIT_VELOCITY, "'m/s2' is the unit of an acceleration; expected a velocity, as in '1 m/s'");
-    assert_problem("5 s", UNIT_NONE, "'s' is the unit of a time; expected a plain number, without unit");
+    assert_problem(
+        "5 m", UNIT_STIFFNESS, "'m' is the unit of a length; expected a stiffness, as in '1 N/m'");
+    assert_problem("5 m/s2", UNIT_VELOCITY,
+        "'m/s2' is the unit of an acceleration; expected a velocity, as in '1 m/s'");
+    assert_problem(
+        "5 s", UNIT_NONE, "'s' is the unit of a time; expected a plain number, without unit");
     /* A frequency could mean f or 2 pi f. */
-    assert_problem("5 Hz", UNIT_ANGULAR_VELOCITY, "'Hz' is the unit of a frequency; expected an angular velocity, as in '1 rad/s'");
+    assert_problem("5 Hz", UNIT_ANGULAR_VELOCITY,
+        "'Hz' is the unit of a frequency; expected an angular velocity, as in '1 rad/s'");
     assert_problem("5 m9", UNIT_LENGTH, "'m9' is the wrong unit; expected a length, as in '1 m'");
     assert_problem("5 %", UNIT_LENGTH, "'%' is the wrong unit; expected a length, as in '1 m'");
 }
@@ -108,20 +113,26 @@ static void unknown_units_are_refused(void **state)
     assert_problem("5 m/", UNIT_VELOCITY, "unknown unit 'm/'; expected a velocity, as in '1 m/s'");
     assert_problem("5 m0", UNIT_LENGTH, "unknown unit 'm0'; expected a length, as in '1 m'");
     /* J/kg K: a product behind a slash is ambiguous. */
-    assert_problem("5 N/m s", UNIT_DAMPING, "unknown unit 'N/m s'; expected a damping coefficient, as in '1 N s/m'");
+    assert_problem("5 N/m s", UNIT_DAMPING,
+        "unknown unit 'N/m s'; expected a damping coefficient, as in '1 N s/m'");
     assert_problem("5 kmin", UNIT_TIME, "unknown unit 'kmin'; expected a time, as in '1 s'");
 }
 
 static void what_is_no_number_is_refused(void **state)
 {
     (void)state;
-    assert_problem("fast", UNIT_NONE, "'fast' is not a number; expected a plain number, without unit");
+    assert_problem(
+        "fast", UNIT_NONE, "'fast' is not a number; expected a plain number, without unit");
     assert_problem("", UNIT_LENGTH, "'' is not a number; expected a length, as in '1 m'");
-    assert_problem(".inf", UNIT_NONE, "'.inf' is not a number; expected a plain number, without unit");
-    assert_problem("nan", UNIT_NONE, "'nan' is not a number; expected a plain number, without unit");
+    assert_problem(
+        ".inf", UNIT_NONE, "'.inf' is not a number; expected a plain number, without unit");
+    assert_problem(
+        "nan", UNIT_NONE, "'nan' is not a number; expected a plain number, without unit");
     assert_problem("0x10", UNIT_NONE, "unknown unit 'x10'; expected a plain number, without unit");
-    assert_problem("1,5", UNIT_NONE, "'1,5' is not a number; expected a plain number, without unit");
-    assert_problem("1..5", UNIT_NONE, "'1..5' is not a number; expected a plain number, without unit");
+    assert_problem(
+        "1,5", UNIT_NONE, "'1,5' is not a number; expected a plain number, without unit");
+    assert_problem(
+        "1..5", UNIT_NONE, "'1..5' is not a number; expected a plain number, without unit");
     assert_problem("1e999", UNIT_NONE, "'1e999' is too large for a double");
     assert_problem("1e300 Tm", UNIT_LENGTH, "'1e300 Tm' is too large for a double");
 }
@@ -129,7 +140,8 @@ static void what_is_no_number_is_refused(void **state)
 static void printed_numbers_read_back(void **state)
 {
     (void)state;
-    const double value[] = {0, 0.1, 1e-5, 2200, 1.0 / 3, 3.14159265358979323846, 5e-324, 1.7976931348623157e308, -0.005, 0.1 + 0.2};
+    const double value[] = {0, 0.1, 1e-5, 2200, 1.0 / 3, 3.14159265358979323846, 5e-324,
+        1.7976931348623157e308, -0.005, 0.1 + 0.2};
     for (size_t k = 0; k < sizeof value / sizeof *value; k++) {
         char text[32];
         units_print(value[k], text);

@@ -1,4 +1,5 @@
-/* The command line: what is taken, what is refused and in which words, and that --help offers what is known. */
+/* The command line: what is taken, what is refused and in which words, and that --help offers what
+ * is known. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -14,7 +15,8 @@
 
 enum { MOST_WORDS = 32 };
 
-/* Parses "democles" and the words of `line`, which are split in place and have to outlive the options. */
+/* Parses "democles" and the words of `line`, which are split in place and have to outlive the
+ * options. */
 static struct options parse(char *line)
 {
     char *word[MOST_WORDS] = {(char[]){"democles"}};
@@ -42,18 +44,25 @@ static void refuses_with_the_nearest_word(void **state)
     refuses("", "a command is missing; see `democles --help`");
     refuses("rnu a.yaml", "there is no command 'rnu'; did you mean 'run'?");
     refuses("simulate a.yaml", "there is no command 'simulate'; see `democles --help`");
-    refuses("--quiet run a.yaml", "a command has to come first, not '--quiet'; see `democles --help`");
+    refuses(
+        "--quiet run a.yaml", "a command has to come first, not '--quiet'; see `democles --help`");
     refuses("resume", "`democles resume` needs a DIR");
-    refuses("resume out --force", "`democles resume` has no option '--force'; see `democles resume --help`");
+    refuses("resume out --force",
+        "`democles resume` has no option '--force'; see `democles resume --help`");
     refuses("run", "`democles run` needs a SCENE");
     refuses("check --resolved", "`democles check` needs a SCENE");
     refuses("run a.yaml b.yaml", "`democles run` takes one SCENE, not both 'a.yaml' and 'b.yaml'");
     refuses("devices a.yaml", "`democles devices` takes no argument 'a.yaml'");
-    refuses("run a.yaml --stpes 5", "`democles run` has no option '--stpes'; did you mean '--steps'?");
-    refuses("run a.yaml --stpes=5", "`democles run` has no option '--stpes'; did you mean '--steps'?");
-    refuses("run a.yaml --step 5", "`democles run` has no option '--step'; did you mean '--steps'?");
-    refuses("check a.yaml --force", "`democles check` has no option '--force'; see `democles check --help`");
-    refuses("explain --resolved", "`democles explain` has no option '--resolved'; see `democles explain --help`");
+    refuses(
+        "run a.yaml --stpes 5", "`democles run` has no option '--stpes'; did you mean '--steps'?");
+    refuses(
+        "run a.yaml --stpes=5", "`democles run` has no option '--stpes'; did you mean '--steps'?");
+    refuses(
+        "run a.yaml --step 5", "`democles run` has no option '--step'; did you mean '--steps'?");
+    refuses("check a.yaml --force",
+        "`democles check` has no option '--force'; see `democles check --help`");
+    refuses("explain --resolved",
+        "`democles explain` has no option '--resolved'; see `democles explain --help`");
 }
 
 static void refuses_values(void **state)
@@ -69,10 +78,12 @@ static void refuses_values(void **state)
     refuses("run a.yaml --steps 1.5", "--steps '1.5': expected a whole number, at least 0");
     refuses("run a.yaml --steps -1", "--steps '-1': expected a whole number, at least 0");
     refuses("run a.yaml --steps +-1", "--steps '+-1': expected a whole number, at least 0");
-    refuses("run a.yaml --steps 99999999999999999999", "--steps '99999999999999999999': expected a whole number, at least 0");
+    refuses("run a.yaml --steps 99999999999999999999",
+        "--steps '99999999999999999999': expected a whole number, at least 0");
     refuses("devices --ranks 0", "--ranks '0': expected a whole number, at least 1");
     refuses("run a.yaml --trace-steps 0", "--trace-steps '0': expected a whole number, at least 1");
-    refuses("run a.yaml --max-time 1h30", "--max-time '1h30': expected a time like 1h30m, 90s or 3600");
+    refuses(
+        "run a.yaml --max-time 1h30", "--max-time '1h30': expected a time like 1h30m, 90s or 3600");
     refuses("run a.yaml --precision singel", "--precision 'singel': did you mean 'single'?");
     refuses("run a.yaml --precision half", "--precision 'half': expected double, mixed or single");
 }
@@ -81,7 +92,8 @@ static void takes_all_of_run(void **state)
 {
     (void)state;
     char line[] =
-        "run --precision mixed -o a/b s.yaml --set time.end=1s --steps=7 --max-time 1h30m --force --device pocl:0 --set k==v --quiet --profile";
+        "run --precision mixed -o a/b s.yaml --set time.end=1s --steps=7 --max-time 1h30m --force "
+        "--device pocl:0 --set k==v --quiet --profile";
     struct options o = parse(line);
     assert_null(o.error);
     assert_int_equal(o.command, OPTIONS_RUN);
@@ -117,12 +129,15 @@ static void defaults_of_run(void **state)
 static void traces(void **state)
 {
     (void)state;
-    char plain[] = "run s.yaml --trace", from[] = "run s.yaml --trace-from 7", length[] = "run s.yaml --trace-steps=3";
+    char plain[] = "run s.yaml --trace", from[] = "run s.yaml --trace-from 7",
+         length[] = "run s.yaml --trace-steps=3";
     struct options o = parse(plain);
-    assert_true(!o.error && o.run.trace && o.run.trace_from == -1 && o.run.trace_steps == TRACE_STEPS);
+    assert_true(
+        !o.error && o.run.trace && o.run.trace_from == -1 && o.run.trace_steps == TRACE_STEPS);
     options_free(&o);
     o = parse(from);
-    assert_true(!o.error && o.run.trace && o.run.trace_from == 7 && o.run.trace_steps == TRACE_STEPS);
+    assert_true(
+        !o.error && o.run.trace && o.run.trace_from == 7 && o.run.trace_steps == TRACE_STEPS);
     options_free(&o);
     o = parse(length);
     assert_true(!o.error && o.run.trace && o.run.trace_from == -1 && o.run.trace_steps == 3);
@@ -133,7 +148,8 @@ static void takes_other_commands(void **state)
 {
     (void)state;
     char resume[] = "resume out/a --steps 9 --set time.end=1s --max-time 2m --device 0:0 --quiet";
-    char check[] = "check --resolved s.yaml", devices[] = "devices --ranks 4", explain[] = "explain", help[] = "run --help", version[] = "--version";
+    char check[] = "check --resolved s.yaml", devices[] = "devices --ranks 4",
+         explain[] = "explain", help[] = "run --help", version[] = "--version";
     struct options o = parse(resume);
     assert_true(!o.error && o.command == OPTIONS_RESUME && o.run.n_step == 9 && o.n_set == 1);
     assert_string_equal(o.operand, "out/a");
@@ -168,17 +184,21 @@ static char *help_of(enum options_command command)
     return copy;
 }
 
-/* Each line of a command's help that begins with an option names one that the command knows, and what users rely on is among them. */
+/* Each line of a command's help that begins with an option names one that the command knows, and
+ * what users rely on is among them. */
 static void help_offers_what_is_known(void **state)
 {
     (void)state;
     static const struct {
         enum options_command command;
         const char *name, *option[9];
-    } expected[] = {{OPTIONS_RUN, "run", {"-o DIR", "--set KEY=VALUE", "--force", "--device", "--precision", "--steps N", "--max-time", "--quiet"}},
-        {OPTIONS_RESUME, "resume", {"--set KEY=VALUE", "--device", "--steps N", "--max-time", "--quiet", "--profile"}},
-        {OPTIONS_CHECK, "check", {"--set KEY=VALUE", "--resolved"}}, {OPTIONS_DEVICES, "devices", {"--ranks N"}},
-        {OPTIONS_EXPLAIN, "explain", {"--help"}}};
+    } expected[] = {{OPTIONS_RUN, "run",
+                        {"-o DIR", "--set KEY=VALUE", "--force", "--device", "--precision",
+                            "--steps N", "--max-time", "--quiet"}},
+        {OPTIONS_RESUME, "resume",
+            {"--set KEY=VALUE", "--device", "--steps N", "--max-time", "--quiet", "--profile"}},
+        {OPTIONS_CHECK, "check", {"--set KEY=VALUE", "--resolved"}},
+        {OPTIONS_DEVICES, "devices", {"--ranks N"}}, {OPTIONS_EXPLAIN, "explain", {"--help"}}};
     for (int c = 0; c < 5; c++) {
         char *text = help_of(expected[c].command);
         for (int k = 0; expected[c].option[k]; k++) {
@@ -187,7 +207,8 @@ static void help_offers_what_is_known(void **state)
             free(begin);
         }
         for (char *line = strstr(text, "\n    -"); line; line = strstr(line + 1, "\n    -")) {
-            char *words = fail_format("%s %.*s", expected[c].name, (int)strcspn(line + 5, " "), line + 5);
+            char *words =
+                fail_format("%s %.*s", expected[c].name, (int)strcspn(line + 5, " "), line + 5);
             struct options o = parse(words);
             assert_true(!o.error || !strstr(o.error, "has no option"));
             options_free(&o);
@@ -202,8 +223,9 @@ static void help_offers_what_is_known(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(refuses_with_the_nearest_word), cmocka_unit_test(refuses_values),
-        cmocka_unit_test(takes_all_of_run), cmocka_unit_test(defaults_of_run), cmocka_unit_test(traces), cmocka_unit_test(takes_other_commands),
-        cmocka_unit_test(help_offers_what_is_known)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(refuses_with_the_nearest_word),
+        cmocka_unit_test(refuses_values), cmocka_unit_test(takes_all_of_run),
+        cmocka_unit_test(defaults_of_run), cmocka_unit_test(traces),
+        cmocka_unit_test(takes_other_commands), cmocka_unit_test(help_offers_what_is_known)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* What several tests of this area need: random numbers, files that vanish, a scene made of walls. Includes cmocka. */
+/* What several tests of this area need: random numbers, files that vanish, a scene made of walls.
+ * Includes cmocka. */
 #ifndef SCRATCH_H
 #define SCRATCH_H
 
@@ -38,8 +39,9 @@ static inline void scratch_rotation(uint64_t *state, double r[9])
     } while (square > 1 || square < 0.01);
     for (int k = 0; k < 4; k++) q[k] /= sqrt(square);
     double w = q[0], x = q[1], y = q[2], z = q[3];
-    double rows[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), 2 * (x * y + w * z), 1 - 2 * (x * x + z * z),
-        2 * (y * z - w * x), 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)};
+    double rows[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),
+        2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x), 2 * (x * z - w * y),
+        2 * (y * z + w * x), 1 - 2 * (x * x + y * y)};
     memcpy(r, rows, sizeof rows);
 }
 
@@ -77,7 +79,8 @@ static inline char *scratch_stl(const double *corner, int n)
         size += (size_t)snprintf(text + size, room - size, "facet normal 0 0 0\nouter loop\n");
         for (int k = 0; k < 3; k++) {
             const double *p = corner + 9 * t + 3 * k;
-            size += (size_t)snprintf(text + size, room - size, "vertex %.17g %.17g %.17g\n", p[0], p[1], p[2]);
+            size += (size_t)snprintf(
+                text + size, room - size, "vertex %.17g %.17g %.17g\n", p[0], p[1], p[2]);
         }
         size += (size_t)snprintf(text + size, room - size, "endloop\nendfacet\n");
     }
@@ -90,7 +93,8 @@ static inline char *scratch_stl(const double *corner, int n)
 /* Corners of an axis-parallel box's 12 triangles, facing outwards, into corner [12][3][3]. */
 static inline void scratch_box(const double low[3], const double high[3], double *corner)
 {
-    static const int quad[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    static const int quad[6][4] = {
+        {0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
     static const int cut[6] = {0, 1, 2, 0, 2, 3};
     for (int f = 0; f < 6; f++)
         for (int k = 0; k < 6; k++)
@@ -99,7 +103,12 @@ static inline void scratch_box(const double low[3], const double high[3], double
 
 static inline struct wall scratch_wall(enum surface_kind kind)
 {
-    struct wall wall = {.name = "wall", .kind = kind, .scale = 1, .remove_at = HUGE_VAL, .rotation_axis = {0, 0, 1}, .line = 7};
+    struct wall wall = {.name = "wall",
+        .kind = kind,
+        .scale = 1,
+        .remove_at = HUGE_VAL,
+        .rotation_axis = {0, 0, 1},
+        .line = 7};
     wall.normal[2] = 1;
     return wall;
 }

@@ -1,6 +1,7 @@
-/* A sphere over a triangle mesh has one contact per local minimum of the distance: no gap and no double count, wherever it lies on a plane
- * however cut and turned; one contact on a ridge, two in a valley. The mesh goes through an STL file, as a user's does.
- * Compiled in double and in float. */
+/* A sphere over a triangle mesh has one contact per local minimum of the distance: no gap and no
+ * double count, wherever it lies on a plane however cut and turned; one contact on a ridge, two in
+ * a valley. The mesh goes through an STL file, as a user's does. Compiled in double and in
+ * float. */
 #include "scratch.h"
 
 #include "wall_reference.h"
@@ -8,14 +9,19 @@
 enum { N = 5, N_MESH = 20, N_PLACE = 60, N_TRIANGLE = 2 * N * N };
 static const double radius = 0.3;
 
-/* Heights z of a sheet over the unit grid, cut into N x N cells; inner grid points move at random, diagonals fall either way. */
-static void make_sheet(uint64_t *state, const double turn[9], const double shift[3], double fold, double point[N + 1][N + 1][3], double *corner)
+/* Heights z of a sheet over the unit grid, cut into N x N cells; inner grid points move at random,
+ * diagonals fall either way. */
+static void make_sheet(uint64_t *state, const double turn[9], const double shift[3], double fold,
+    double point[N + 1][N + 1][3], double *corner)
 {
-    static const int cut[2][6] = {{0, 1, 3, 0, 3, 2}, {0, 1, 2, 1, 3, 2}}; /* of the cell's corners 0: (0,0), 1: (1,0), 2: (0,1), 3: (1,1) */
+    /* of the cell's corners 0: (0,0), 1: (1,0), 2: (0,1), 3: (1,1) */
+    static const int cut[2][6] = {{0, 1, 3, 0, 3, 2}, {0, 1, 2, 1, 3, 2}};
     for (int i = 0; i <= N; i++)
         for (int j = 0; j <= N; j++) {
-            bool on_fold = 2 * i == N + 1; /* where the sheet is folded, points move along the fold only */
-            double x = i + (i % N && !on_fold ? scratch_random(state, -0.3, 0.3) : 0), y = j + (j % N ? scratch_random(state, -0.3, 0.3) : 0);
+            /* where the sheet is folded, points move along the fold only */
+            bool on_fold = 2 * i == N + 1;
+            double x = i + (i % N && !on_fold ? scratch_random(state, -0.3, 0.3) : 0),
+                   y = j + (j % N ? scratch_random(state, -0.3, 0.3) : 0);
             double flat[3] = {x, y, fold * fabs(x - 0.5 * (N + 1))};
             scratch_turn(turn, flat, point[i][j]);
             for (int a = 0; a < 3; a++) point[i][j][a] += shift[a];
@@ -41,7 +47,8 @@ struct sheet {
 static void open_sheet(struct sheet *sheet, uint64_t *state, double fold)
 {
     struct scene_errors errors = {0};
-    double shift[3] = {scratch_random(state, -5, 5), scratch_random(state, -5, 5), scratch_random(state, -5, 5)};
+    double shift[3] = {
+        scratch_random(state, -5, 5), scratch_random(state, -5, 5), scratch_random(state, -5, 5)};
     scratch_rotation(state, sheet->turn);
     make_sheet(state, sheet->turn, shift, fold, sheet->point, sheet->corner);
     sheet->wall = scratch_wall(SURFACE_STL);
@@ -69,14 +76,16 @@ static int count_contacts(const struct sheet *sheet, const double x[3], double s
         reference_contacts(sheet->walls, &sheet->pose, x, radius, &k, 1, &one_kept, closest);
         if ((double)closest[0].distance <= radius * (1 + skin)) candidate[n_candidate++] = k;
     }
-    int n_kept = reference_contacts(sheet->walls, &sheet->pose, x, radius, candidate, n_candidate, kept, closest);
+    int n_kept = reference_contacts(
+        sheet->walls, &sheet->pose, x, radius, candidate, n_candidate, kept, closest);
     for (int k = 0; k < n_kept; k++)
         if ((double)closest[k].distance < radius) n[n_contact++] = closest[k].n;
     return n_contact;
 }
 
 /* p + h m, m the sheet's own direction d turned. */
-static void lift(const struct sheet *sheet, const double p[3], double dx, double dz, double h, double x[3])
+static void lift(
+    const struct sheet *sheet, const double p[3], double dx, double dz, double h, double x[3])
 {
     double d[3] = {dx, 0, dz}, m[3];
     scratch_turn(sheet->turn, d, m);
@@ -97,8 +106,8 @@ static void check_one(const struct sheet *sheet, const double p[3], double h)
     }
 }
 
-/* Faces, exactly over edges and vertices, and beside edges by 1e-2 to 1e-12 edge lengths, where rules 2 and 3 must meet; from both sides, from a
- * fifth of the radius to almost touching. */
+/* Faces, exactly over edges and vertices, and beside edges by 1e-2 to 1e-12 edge lengths, where
+ * rules 2 and 3 must meet; from both sides, from a fifth of the radius to almost touching. */
 static void test_plane_however_cut(void **unused)
 {
     (void)unused;
@@ -108,7 +117,8 @@ static void test_plane_however_cut(void **unused)
         open_sheet(&sheet, &state, 0);
         for (int k = 0; k < N_PLACE; k++) {
             const double *t = sheet.corner + 9 * (int)scratch_random(&state, 0, N_TRIANGLE);
-            double u = scratch_random(&state, 0, 1), v = scratch_random(&state, 0, 1 - u), h = scratch_random(&state, 0.2, 0.999) * radius;
+            double u = scratch_random(&state, 0, 1), v = scratch_random(&state, 0, 1 - u),
+                   h = scratch_random(&state, 0.2, 0.999) * radius;
             double face[3], edge[3], beside[3], off = pow(10, -scratch_random(&state, 2, 12));
             for (int a = 0; a < 3; a++) {
                 face[a] = t[a] + u * (t[3 + a] - t[a]) + v * (t[6 + a] - t[a]);
@@ -125,7 +135,8 @@ static void test_plane_however_cut(void **unused)
     }
 }
 
-/* Folded along a line of edges, 45 degrees up on each side: from below, over the ridge, one contact; from above, in the valley, one on each side. */
+/* Folded along a line of edges, 45 degrees up on each side: from below, over the ridge, one
+ * contact; from above, in the valley, one on each side. */
 static void test_ridge_and_valley(void **unused)
 {
     (void)unused;
@@ -137,13 +148,18 @@ static void test_ridge_and_valley(void **unused)
         open_sheet(&sheet, &state, 1);
         for (int k = 0; k < N_PLACE; k++) {
             int i = (N + 1) / 2, j = 1 + (int)scratch_random(&state, 0, N - 2);
-            double at = k % 3 ? scratch_random(&state, 0, 1) : 0, p[3]; /* every third over a vertex of the fold */
-            for (int a = 0; a < 3; a++) p[a] = sheet.point[i][j][a] + at * (sheet.point[i][j + 1][a] - sheet.point[i][j][a]);
+            /* every third over a vertex of the fold */
+            double at = k % 3 ? scratch_random(&state, 0, 1) : 0, p[3];
+            for (int a = 0; a < 3; a++)
+                p[a] =
+                    sheet.point[i][j][a] + at * (sheet.point[i][j + 1][a] - sheet.point[i][j][a]);
             lift(&sheet, p, scratch_random(&state, -0.9, 0.9), -1, 0.9 * radius, x);
             assert_int_equal(count_contacts(&sheet, x, 0.5, n), 1);
-            lift(&sheet, p, 0, 1, scratch_random(&state, 0.3, 1.4) * radius, x); /* both faces at h/sqrt(2) < radius */
+            /* both faces at h/sqrt(2) < radius */
+            lift(&sheet, p, 0, 1, scratch_random(&state, 0.3, 1.4) * radius, x);
             assert_int_equal(count_contacts(&sheet, x, 0.5, n), 2);
-            assert_true(fabs((double)p3_dot(n[0], n[1])) < 1e-4); /* the two faces are perpendicular */
+            /* the two faces are perpendicular */
+            assert_true(fabs((double)p3_dot(n[0], n[1])) < 1e-4);
         }
         close_sheet(&sheet);
     }
@@ -167,23 +183,29 @@ static void test_rim(void **unused)
     }
 }
 
-/* History goes from a contact that ended to one that began on a neighbour with nearly the same normal, and to no other. */
+/* History goes from a contact that ended to one that began on a neighbour with nearly the same
+ * normal, and to no other. */
 static void test_hand_over(void **unused)
 {
     (void)unused;
-    struct wall_features s = wall_features(0, 1, 2, 10, 11, 12), by_edge = wall_features(1, 3, 4, 12, 11, 13),
-                         by_corner = wall_features(5, 6, 7, 10, 14, 15), apart = wall_features(7, 8, 9, 16, 17, 18);
+    struct wall_features s = wall_features(0, 1, 2, 10, 11, 12),
+                         by_edge = wall_features(1, 3, 4, 12, 11, 13),
+                         by_corner = wall_features(5, 6, 7, 10, 14, 15),
+                         apart = wall_features(7, 8, 9, 16, 17, 18);
     vec3 n = v3(0, 0, 1), tilted = v3((real)0.5, 0, (real)0.8660254);
-    assert_true(wall_is_neighbour(s, by_edge) && wall_is_neighbour(by_edge, s) && wall_is_neighbour(s, by_corner));
+    assert_true(wall_is_neighbour(s, by_edge) && wall_is_neighbour(by_edge, s) &&
+                wall_is_neighbour(s, by_corner));
     assert_false(wall_is_neighbour(s, apart));
     assert_true(wall_hands_over(1, 1, 1, n, n));
-    assert_false(wall_hands_over(0, 1, 1, n, n) || wall_hands_over(1, 0, 1, n, n) || wall_hands_over(1, 1, 0, n, n));
+    assert_false(wall_hands_over(0, 1, 1, n, n) || wall_hands_over(1, 0, 1, n, n) ||
+                 wall_hands_over(1, 1, 0, n, n));
     assert_false(wall_hands_over(1, 1, 1, n, tilted));
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_plane_however_cut), cmocka_unit_test(test_ridge_and_valley), cmocka_unit_test(test_rim),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_plane_however_cut),
+        cmocka_unit_test(test_ridge_and_valley), cmocka_unit_test(test_rim),
         cmocka_unit_test(test_hand_over)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* Motion of walls: the velocity of every point is its displacement over the step, batches are single steps, walls come and go on step boundaries. */
+/* Motion of walls: the velocity of every point is its displacement over the step, batches are
+ * single steps, walls come and go on step boundaries. */
 #include "scratch.h"
 
 #include "kernels/contact/law_wall.h"
@@ -9,7 +10,8 @@ static const double pi = 3.14159265358979323846;
 static struct wall_frame frame_of(const struct wall_pose *pose)
 {
     const double *r = pose->rotation, *t = pose->translation;
-    struct wall_frame frame = {p3(r[0], r[1], r[2]), p3(r[3], r[4], r[5]), p3(r[6], r[7], r[8]), p3(t[0], t[1], t[2])};
+    struct wall_frame frame = {
+        p3(r[0], r[1], r[2]), p3(r[3], r[4], r[5]), p3(r[6], r[7], r[8]), p3(t[0], t[1], t[2])};
     return frame;
 }
 
@@ -46,7 +48,8 @@ static struct wall moving_wall(uint64_t *state)
     return wall;
 }
 
-/* V + W x (p_h - c) = (p^n - p^(n-1))/dt, for steps from tiny to a sixth of a turn; V, W of the half step, p_h the mean of both places. */
+/* V + W x (p_h - c) = (p^n - p^(n-1))/dt, for steps from tiny to a sixth of a turn; V, W of the
+ * half step, p_h the mean of both places. */
 static void test_velocity_is_displacement(void **unused)
 {
     (void)unused;
@@ -60,18 +63,23 @@ static void test_velocity_is_displacement(void **unused)
         double dt = pow(10, -scratch_random(&state, 1.5, 6));
         walls_poses(walls, dt, (int64_t)scratch_random(&state, 0, 1000), 2, pose);
         for (int point = 0; point < 5; point++) {
-            pvec3 q = p3(scratch_random(&state, -1, 1), scratch_random(&state, -1, 1), scratch_random(&state, -1, 1));
-            pvec3 before = wall_to_world(frame_of(pose), q), after = wall_to_world(frame_of(pose + 1), q);
+            pvec3 q = p3(scratch_random(&state, -1, 1), scratch_random(&state, -1, 1),
+                scratch_random(&state, -1, 1));
+            pvec3 before = wall_to_world(frame_of(pose), q),
+                  after = wall_to_world(frame_of(pose + 1), q);
             pvec3 middle = p3_scale(0.5, p3_add(before, after));
             pvec3 arm = p3_sub(middle, point_of(pose[1].centre));
-            vec3 v = wall_velocity(v3_of_p3(point_of(pose[1].velocity)), v3_of_p3(point_of(pose[1].spin)), v3_of_p3(arm));
-            assert_true(distance_of(p3_scale(dt, p3_of_v3(v)), p3_sub(after, before)) < 1e-13); /* positions of order 100 m at most, rounded */
+            vec3 v = wall_velocity(v3_of_p3(point_of(pose[1].velocity)),
+                v3_of_p3(point_of(pose[1].spin)), v3_of_p3(arm));
+            /* positions of order 100 m at most, rounded */
+            assert_true(distance_of(p3_scale(dt, p3_of_v3(v)), p3_sub(after, before)) < 1e-13);
         }
         walls_free(walls);
     }
 }
 
-/* A quarter of a turn about a centre that moves along, by hand; oscillation starts at A sin(phase). */
+/* A quarter of a turn about a centre that moves along, by hand; oscillation starts at A
+ * sin(phase). */
 static void test_places(void **unused)
 {
     (void)unused;
@@ -111,7 +119,8 @@ static void test_batch(void **unused)
         walls_poses(walls, 1e-5, FIRST + s, 1, one);
         for (int w = 0; w < 3; w++) {
             assert_memory_equal(batch[3 * s + w].rotation, one[w].rotation, sizeof one[w].rotation);
-            assert_memory_equal(batch[3 * s + w].translation, one[w].translation, sizeof one[w].translation);
+            assert_memory_equal(
+                batch[3 * s + w].translation, one[w].translation, sizeof one[w].translation);
             assert_memory_equal(batch[3 * s + w].velocity, one[w].velocity, sizeof one[w].velocity);
         }
     }
@@ -121,7 +130,8 @@ static void test_batch(void **unused)
     walls_free(walls);
 }
 
-/* remove_at 0.3 s at dt = 1e-5 s: active through step 29,999. 0.3/1e-5 is not 30,000 in floating point. */
+/* remove_at 0.3 s at dt = 1e-5 s: active through step 29,999. 0.3/1e-5 is not 30,000 in floating
+ * point. */
 static void test_appear_and_remove(void **unused)
 {
     (void)unused;
@@ -131,7 +141,8 @@ static void test_appear_and_remove(void **unused)
     struct scene scene = scratch_scene(&wall, 1);
     struct scene_errors errors = {0};
     struct walls *walls = walls_create(&scene, &errors);
-    const int64_t step[4] = {9999, 10000, 29999, 30000}, after[4] = {1428, 1429, 4285, 4286}; /* 0.1/7e-5 = 1428.6, 0.3/7e-5 = 4285.7 */
+    /* 0.1/7e-5 = 1428.6, 0.3/7e-5 = 4285.7 */
+    const int64_t step[4] = {9999, 10000, 29999, 30000}, after[4] = {1428, 1429, 4285, 4286};
     for (int k = 0; k < 4; k++) {
         struct wall_pose pose;
         walls_poses(walls, 1e-5, step[k], 1, &pose);
@@ -142,7 +153,8 @@ static void test_appear_and_remove(void **unused)
     walls_free(walls);
 }
 
-/* No point of the wall moves further than walls_displacement says, and at a corner of its bounds it is reached. */
+/* No point of the wall moves further than walls_displacement says, and at a corner of its bounds it
+ * is reached. */
 static void test_displacement(void **unused)
 {
     (void)unused;
@@ -159,22 +171,25 @@ static void test_displacement(void **unused)
         double largest = walls_displacement(walls, 0, &a, &b, NULL, NULL);
         for (int corner = 0; corner < 8; corner++) {
             double q[3];
-            for (int c = 0; c < 3; c++) q[c] = corner >> c & 1 ? walls->wall_high[c] : walls->wall_low[c];
-            far = fmax(far, distance_of(wall_to_world(frame_of(&a), point_of(q)), wall_to_world(frame_of(&b), point_of(q))));
+            for (int c = 0; c < 3; c++)
+                q[c] = corner >> c & 1 ? walls->wall_high[c] : walls->wall_low[c];
+            far = fmax(far, distance_of(wall_to_world(frame_of(&a), point_of(q)),
+                                wall_to_world(frame_of(&b), point_of(q))));
         }
         assert_true(fabs(far - largest) < 1e-12);
         for (int corner = 0; corner < 4; corner++) {
             const double *row = walls->primitive;
             pvec3 q = p3_fma(corner & 1 ? row[9] : -row[9], point_of(row + 3), point_of(row));
             q = p3_fma(corner & 2 ? row[10] : -row[10], point_of(row + 6), q);
-            assert_true(distance_of(wall_to_world(frame_of(&a), q), wall_to_world(frame_of(&b), q)) <= largest + 1e-12);
+            assert_true(distance_of(wall_to_world(frame_of(&a), q),
+                            wall_to_world(frame_of(&b), q)) <= largest + 1e-12);
         }
         walls_free(walls);
     }
 }
 
-/* A plane that slides in itself does not come nearer to anything; one that rises by 2 mm does by 2 mm; one that turns, by the angle times the
- * distance. */
+/* A plane that slides in itself does not come nearer to anything; one that rises by 2 mm does by 2
+ * mm; one that turns, by the angle times the distance. */
 static void test_displacement_of_planes(void **unused)
 {
     (void)unused;
@@ -192,15 +207,19 @@ static void test_displacement_of_planes(void **unused)
         struct wall_pose a, b;
         walls_poses(walls, 1e-3, 0, 1, &a);
         walls_poses(walls, 1e-3, 1, 1, &b);
-        double expected[3] = {0, 2e-3, 2 * sin(1e-3) - (cos(1e-3) - 1)}, tolerance = k == 2 ? 1e-6 : 1e-15;
-        assert_true(fabs(walls_displacement(walls, 0, &a, &b, low, high) - expected[k]) < tolerance);
+        double expected[3] = {0, 2e-3, 2 * sin(1e-3) - (cos(1e-3) - 1)},
+               tolerance = k == 2 ? 1e-6 : 1e-15;
+        assert_true(
+            fabs(walls_displacement(walls, 0, &a, &b, low, high) - expected[k]) < tolerance);
         walls_free(walls);
     }
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_velocity_is_displacement), cmocka_unit_test(test_places), cmocka_unit_test(test_batch),
-        cmocka_unit_test(test_appear_and_remove), cmocka_unit_test(test_displacement), cmocka_unit_test(test_displacement_of_planes)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_velocity_is_displacement),
+        cmocka_unit_test(test_places), cmocka_unit_test(test_batch),
+        cmocka_unit_test(test_appear_and_remove), cmocka_unit_test(test_displacement),
+        cmocka_unit_test(test_displacement_of_planes)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

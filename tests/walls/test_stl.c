@@ -1,4 +1,5 @@
-/* STL files: what is read, welded and dropped, what is refused and with which words; the inside of closed surfaces. */
+/* STL files: what is read, welded and dropped, what is refused and with which words; the inside of
+ * closed surfaces. */
 #include "scratch.h"
 
 #include "shape/solid.h"
@@ -41,7 +42,8 @@ static size_t make_binary(const double *corner, int n, unsigned char *data)
     return size;
 }
 
-#define FACET(a, b, c) "facet normal 0 0 1\nouter loop\nvertex " a "\nvertex " b "\nvertex " c "\nendloop\nendfacet\n"
+#define FACET(a, b, c)                                                                             \
+    "facet normal 0 0 1\nouter loop\nvertex " a "\nvertex " b "\nvertex " c "\nendloop\nendfacet\n"
 
 static void refuse_text(const char *text, const char *expected)
 {
@@ -63,18 +65,27 @@ static void test_refused(void **unused)
     refuse(data, make_binary(corner, 0, data), ": no triangle");
     refuse("ab\1", 3, ": neither ASCII nor binary STL: 3 bytes");
     refuse_text("abc", ": no STL file: text that does not begin with 'solid'");
-    refuse_text("v 500 500 500\nv 510 500 500\nv 500 510 500\nv 500 500 510\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n",
+    refuse_text(
+        "v 500 500 500\nv 510 500 500\nv 500 510 500\nv 500 500 510\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf "
+        "2 3 4\n",
         ": no STL file: text that does not begin with 'solid'");
     refuse("", 0, ": neither ASCII nor binary STL: 0 bytes");
     refuse_text("solid\nendsolid\n", ": no triangle");
-    refuse_text("solid s\n" FACET("0 0 0", "1 0 0", "0 1 0"), ":9: the file is cut off: no 'endsolid'");
-    refuse_text("solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0", ":5: the file ends within a triangle");
-    refuse_text("solid s\n" FACET("0 0 0", "1 nan 0", "0 1 0") "endsolid\n", ":5: 'nan' is not a finite number");
-    refuse_text("solid s\n" FACET("0 0 0", "1 0x 0", "0 1 0") "endsolid\n", ":5: '0x' is not a finite number");
-    refuse_text("solid s\n" FACET("0 0 0", "1 0 0", "0 1 0\nvertex 3 3 3") "endsolid\n", ":7: more than three corners in a triangle");
-    refuse_text("solid s\nouter loop\nvertex 0 0 0\nendloop\nendsolid\n", ":4: 1 corners in a triangle");
+    refuse_text(
+        "solid s\n" FACET("0 0 0", "1 0 0", "0 1 0"), ":9: the file is cut off: no 'endsolid'");
+    refuse_text("solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0",
+        ":5: the file ends within a triangle");
+    refuse_text("solid s\n" FACET("0 0 0", "1 nan 0", "0 1 0") "endsolid\n",
+        ":5: 'nan' is not a finite number");
+    refuse_text("solid s\n" FACET("0 0 0", "1 0x 0", "0 1 0") "endsolid\n",
+        ":5: '0x' is not a finite number");
+    refuse_text("solid s\n" FACET("0 0 0", "1 0 0", "0 1 0\nvertex 3 3 3") "endsolid\n",
+        ":7: more than three corners in a triangle");
+    refuse_text(
+        "solid s\nouter loop\nvertex 0 0 0\nendloop\nendsolid\n", ":4: 1 corners in a triangle");
     refuse_text("solid s\nfacte normal\nendsolid\n", ":2: 'facte' is no word of an STL file");
-    refuse_text("solid s\n" FACET("0 0 0", "1 0 0", "2 0 0") "endsolid\n", ": none of its 1 triangles has an area");
+    refuse_text("solid s\n" FACET("0 0 0", "1 0 0", "2 0 0") "endsolid\n",
+        ": none of its 1 triangles has an area");
 }
 
 static void test_unreadable(void **unused)
@@ -89,7 +100,8 @@ static void test_unreadable(void **unused)
     free(error);
 }
 
-/* A cube has 8 corners and 18 edges, in binary and ASCII alike, and is closed; without one triangle 3 edges are open. Lengths are scaled. */
+/* A cube has 8 corners and 18 edges, in binary and ASCII alike, and is closed; without one triangle
+ * 3 edges are open. Lengths are scaled. */
 static void test_cube(void **unused)
 {
     (void)unused;
@@ -98,9 +110,12 @@ static void test_cube(void **unused)
     char *error = NULL;
     scratch_box(zero, two, corner);
     char *path = scratch_file(data, make_binary(corner, 12, data));
-    struct stl *binary = stl_read(path, 1e-3, &error), *ascii = read_corners(corner, 12), *open = read_corners(corner, 11);
-    assert_true(binary && binary->n_vertex == 8 && binary->n_edge == 18 && binary->n_triangle == 12 && binary->n_dropped == 0);
-    assert_true(ascii->n_vertex == 8 && ascii->n_edge == 18 && stl_is_closed(ascii) && stl_is_closed(binary));
+    struct stl *binary = stl_read(path, 1e-3, &error), *ascii = read_corners(corner, 12),
+               *open = read_corners(corner, 11);
+    assert_true(binary && binary->n_vertex == 8 && binary->n_edge == 18 &&
+                binary->n_triangle == 12 && binary->n_dropped == 0);
+    assert_true(ascii->n_vertex == 8 && ascii->n_edge == 18 && stl_is_closed(ascii) &&
+                stl_is_closed(binary));
     assert_memory_equal(ascii->triangle, binary->triangle, 36 * sizeof(int));
     assert_memory_equal(ascii->edge, binary->edge, 36 * sizeof(int));
     for (int k = 0; k < 24; k++) assert_true(binary->vertex[k] == ascii->vertex[k] * 1e-3);
@@ -111,14 +126,16 @@ static void test_cube(void **unused)
     scratch_remove(path);
 }
 
-/* Corners that differ by rounding are one; slivers and points go, counted; one flipped triangle opens its edges. */
+/* Corners that differ by rounding are one; slivers and points go, counted; one flipped triangle
+ * opens its edges. */
 static void test_weld_and_drop(void **unused)
 {
     (void)unused;
     double corner[9 * 15];
     scratch_box(zero, one, corner);
     for (int k = 0; k < 108; k++) corner[k] += 1e-8 * (k % 5 - 2);
-    const double bad[27] = {0, 0, 0, 0, 0, 0, 1, 1, 1, 0, 0, 0, 0.5, 0, 0, 1, 0, 0, 1, 1, 1, 0, 0, 1, 0.5, 0.5, 1 + 1e-9};
+    const double bad[27] = {0, 0, 0, 0, 0, 0, 1, 1, 1, 0, 0, 0, 0.5, 0, 0, 1, 0, 0, 1, 1, 1, 0, 0,
+        1, 0.5, 0.5, 1 + 1e-9};
     memcpy(corner + 108, bad, sizeof bad);
     struct stl *stl = read_corners(corner, 15);
     assert_true(stl->n_triangle == 12 && stl->n_dropped == 3 && stl_is_closed(stl));
@@ -131,7 +148,8 @@ static void test_weld_and_drop(void **unused)
     stl_free(stl);
 }
 
-/* Points in and out of a cube that stands on a vertex grid, so rays run exactly through edges and vertices. */
+/* Points in and out of a cube that stands on a vertex grid, so rays run exactly through edges and
+ * vertices. */
 static void test_inside_of_a_cube(void **unused)
 {
     (void)unused;
@@ -142,8 +160,10 @@ static void test_inside_of_a_cube(void **unused)
     for (int i = -4; i <= 12; i++)
         for (int j = -4; j <= 12; j++)
             for (int k = -4; k <= 12; k++) {
-                double x[3] = {i / 8.0, j / 8.0, k / 8.0}, edge = fmin(fmin(fmin(i, 8 - i), fmin(j, 8 - j)), fmin(k, 8 - k)) / 8.0;
-                if (edge > 0 || edge < 0) assert_int_equal(solid_contains(solid, x), edge > 0); /* on the surface either answer is right */
+                double x[3] = {i / 8.0, j / 8.0, k / 8.0},
+                       edge = fmin(fmin(fmin(i, 8 - i), fmin(j, 8 - j)), fmin(k, 8 - k)) / 8.0;
+                /* on the surface either answer is right */
+                if (edge > 0 || edge < 0) assert_int_equal(solid_contains(solid, x), edge > 0);
                 if (edge > 0) assert_true(fabs(solid_distance(solid, x, 10) - edge) < 1e-15);
                 if (edge > 0.25) assert_true(solid_distance(solid, x, 0.25) == 0.25);
             }
@@ -151,7 +171,8 @@ static void test_inside_of_a_cube(void **unused)
     stl_free(stl);
 }
 
-/* An L of two overlapping boxes, turned at random and facing inwards: inside is where either box is. */
+/* An L of two overlapping boxes, turned at random and facing inwards: inside is where either box
+ * is. */
 static void test_overlapping_and_turned(void **unused)
 {
     (void)unused;
@@ -163,7 +184,8 @@ static void test_overlapping_and_turned(void **unused)
         scratch_box(zero, one, corner);
         scratch_box(zero, long_high, corner + 108);
         for (int t = 0; t < 24; t++) {
-            for (int k = 0; k < 3; k++) scratch_turn(turn, corner + 9 * t + 3 * k, corner + 9 * t + 3 * k);
+            for (int k = 0; k < 3; k++)
+                scratch_turn(turn, corner + 9 * t + 3 * k, corner + 9 * t + 3 * k);
             for (int a = 0; a < 3 && trial % 2; a++) {
                 double swap = corner[9 * t + a];
                 corner[9 * t + a] = corner[9 * t + 3 + a];
@@ -174,7 +196,9 @@ static void test_overlapping_and_turned(void **unused)
         assert_true(stl_is_closed(stl));
         struct solid *solid = solid_create(stl);
         for (int k = 0; k < 500; k++) {
-            double q[3] = {scratch_random(&state, -0.5, 2.5), scratch_random(&state, -0.5, 1.5), scratch_random(&state, -0.5, 1.5)}, x[3];
+            double q[3] = {scratch_random(&state, -0.5, 2.5), scratch_random(&state, -0.5, 1.5),
+                scratch_random(&state, -0.5, 1.5)},
+                   x[3];
             bool in = true, in_long = true;
             for (int a = 0; a < 3; a++) {
                 in = in && q[a] > 0 && q[a] < 1;
@@ -190,7 +214,9 @@ static void test_overlapping_and_turned(void **unused)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_refused), cmocka_unit_test(test_unreadable), cmocka_unit_test(test_cube),
-        cmocka_unit_test(test_weld_and_drop), cmocka_unit_test(test_inside_of_a_cube), cmocka_unit_test(test_overlapping_and_turned)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_unreadable), cmocka_unit_test(test_cube),
+        cmocka_unit_test(test_weld_and_drop), cmocka_unit_test(test_inside_of_a_cube),
+        cmocka_unit_test(test_overlapping_and_turned)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

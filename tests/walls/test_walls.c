@@ -1,4 +1,5 @@
-/* The table of primitives: order, kinds, bounds, the axes of a rectangle, which triangles share what, messages about files. */
+/* The table of primitives: order, kinds, bounds, the axes of a rectangle, which triangles share
+ * what, messages about files. */
 #include "scratch.h"
 
 #include "kernels/contact/law_wall.h"
@@ -7,7 +8,8 @@
 static void test_axes(void **unused)
 {
     (void)unused;
-    const double normal[6][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -3, 0}, {0, 0, 1}, {0, 0, -1}};
+    const double normal[6][3] = {
+        {1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -3, 0}, {0, 0, 1}, {0, 0, -1}};
     for (int k = 0; k < 6; k++) {
         double u[3], v[3];
         walls_axes(normal[k], u, v);
@@ -18,7 +20,9 @@ static void test_axes(void **unused)
     }
     uint64_t state = 2;
     for (int k = 0; k < 200; k++) {
-        double m[3] = {scratch_random(&state, -1, 1), scratch_random(&state, -1, 1), scratch_random(&state, -1, 1)}, u[3], v[3];
+        double m[3] = {scratch_random(&state, -1, 1), scratch_random(&state, -1, 1),
+            scratch_random(&state, -1, 1)},
+               u[3], v[3];
         double mu = 0, mv = 0, uv = 0, uu = 0, vv = 0;
         walls_axes(m, u, v);
         for (int a = 0; a < 3; a++) {
@@ -28,7 +32,8 @@ static void test_axes(void **unused)
             uu += u[a] * u[a];
             vv += v[a] * v[a];
         }
-        assert_true(fabs(mu) < 1e-15 && fabs(mv) < 1e-15 && fabs(uv) < 1e-15 && fabs(uu - 1) < 1e-15 && fabs(vv - 1) < 1e-15);
+        assert_true(fabs(mu) < 1e-15 && fabs(mv) < 1e-15 && fabs(uv) < 1e-15 &&
+                    fabs(uu - 1) < 1e-15 && fabs(vv - 1) < 1e-15);
     }
 }
 
@@ -40,8 +45,8 @@ static void test_order(void **unused)
     double corner[108];
     scratch_box(low, high, corner);
     char *path = scratch_stl(corner, 12);
-    struct wall wall[5] = {scratch_wall(SURFACE_PLANE), scratch_wall(SURFACE_BOX), scratch_wall(SURFACE_STL), scratch_wall(SURFACE_RECTANGLE),
-        scratch_wall(SURFACE_CYLINDER)};
+    struct wall wall[5] = {scratch_wall(SURFACE_PLANE), scratch_wall(SURFACE_BOX),
+        scratch_wall(SURFACE_STL), scratch_wall(SURFACE_RECTANGLE), scratch_wall(SURFACE_CYLINDER)};
     for (int a = 0; a < 3; a++) wall[1].max[a] = 1;
     wall[2].stl = path;
     wall[2].scale = 0.1;
@@ -88,7 +93,8 @@ static void test_box_faces_inwards(void **unused)
     walls_free(walls);
 }
 
-/* On a cube each edge is shared by two triangles; the lists agree with the numbers of each triangle; a second mesh has numbers of its own. */
+/* On a cube each edge is shared by two triangles; the lists agree with the numbers of each
+ * triangle; a second mesh has numbers of its own. */
 static void test_sharing(void **unused)
 {
     (void)unused;
@@ -96,7 +102,8 @@ static void test_sharing(void **unused)
     double corner[108];
     scratch_box(low, high, corner);
     char *path = scratch_stl(corner, 12);
-    struct wall wall[3] = {scratch_wall(SURFACE_STL), scratch_wall(SURFACE_PLANE), scratch_wall(SURFACE_STL)};
+    struct wall wall[3] = {
+        scratch_wall(SURFACE_STL), scratch_wall(SURFACE_PLANE), scratch_wall(SURFACE_STL)};
     wall[0].stl = wall[2].stl = path;
     struct scene scene = scratch_scene(wall, 3);
     struct scene_errors errors = {0};
@@ -137,7 +144,8 @@ static void test_messages(void **unused)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_axes), cmocka_unit_test(test_order), cmocka_unit_test(test_box_faces_inwards),
-        cmocka_unit_test(test_sharing), cmocka_unit_test(test_messages)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_axes), cmocka_unit_test(test_order),
+        cmocka_unit_test(test_box_faces_inwards), cmocka_unit_test(test_sharing),
+        cmocka_unit_test(test_messages)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

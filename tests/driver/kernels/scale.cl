@@ -1,8 +1,10 @@
-/* For the tests of program and launch: scalars of several types, and an argument that a feature removes. */
+/* For the tests of program and launch: scalars of several types, and an argument that a feature
+ * removes. */
 #include "inner.h"
 #include "../anywhere/outer.h"
 
-__kernel __attribute__((reqd_work_group_size(64, 1, 1))) void scale(__global const real *x, __global real *y,
+__kernel __attribute__((reqd_work_group_size(64, 1, 1))) void scale(__global const real *x,
+    __global real *y,
 #if WITH_SHIFT
     __global const real *shift,
 #endif
