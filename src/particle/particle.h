@@ -65,6 +65,8 @@ void particle_resume(struct sim *s);
 void particle_spread(struct sim *s, const double *x, int64_t n);
 /* Forces of pairs and walls at the present step, into the result records. */
 void particle_forces(struct sim *s);
+void particle_advance(struct sim *s, bool observe);
+void particle_go_on(struct sim *s);
 /* Binds the step's kernels to buffers; sets sizes. After every build. */
 void particle_bind(struct sim *s);
 

@@ -207,3 +207,13 @@ void particle_cut(struct sim *s)
     run->rcb = tree;
     owners_set_tree(s->dev, run->owners, tree);
 }
+
+void particle_spread(struct sim *s, const double *x, int64_t n)
+{
+    struct particle_run *run = s->particle;
+    int64_t *weight = fail_alloc((size_t)n * sizeof *weight);
+    for (int64_t i = 0; i < n; i++) weight[i] = 1;
+    run->rcb = rcb_create(s->comm, s->comm->n_rank, NULL, x, weight, n);
+    owners_set_tree(s->dev, run->owners, run->rcb);
+    free(weight);
+}

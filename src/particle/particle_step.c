@@ -85,7 +85,7 @@ static void read_flags(struct sim *s)
     else device_flush(s->dev);
 }
 
-static void advance(struct sim *s, bool observe)
+void particle_advance(struct sim *s, bool observe)
 {
     struct particle_run *run = s->particle;
     particle_forces(s);
@@ -95,40 +95,9 @@ static void advance(struct sim *s, bool observe)
     if (!observe) read_flags(s);
 }
 
-static void resume(struct sim *s)
+void particle_go_on(struct sim *s)
 {
     struct particle_run *run = s->particle;
     launch_run(run->kick_drift, s->dev->compute, run->particles->n_owned, 0, NULL, NULL);
     read_flags(s);
 }
-
-static bool stale(struct sim *s)
-{
-    struct particle_run *run = s->particle;
-    return run->wall_contacts &&
-           wall_contacts_stale(run->wall_contacts, s->step, run->box, run->box + 3);
-}
-
-const struct step_ops particle_ops = {
-    .name = "particles",
-    .read = particle_read,
-    .plan = particle_plan,
-    .setup = particle_setup,
-    .warn = particle_warn,
-    .free = particle_free,
-    .stale = stale,
-    .regroup = particle_regroup,
-    .advance = advance,
-    .resume = resume,
-    .check_limit = particle_check_limit,
-    .n_element = particle_number,
-    .frame = particle_frame,
-    .measure_columns = particle_measure_columns,
-    .measure = particle_measure,
-    .digest = particle_digest,
-    .n_owned = particle_owned,
-    .count = particle_count,
-    .report_features = particle_report_features,
-    .report_energy = particle_report_energy,
-    .report_kernels = particle_report_kernels,
-};
