@@ -294,7 +294,7 @@ void launch_run(struct launch *launch, cl_command_queue queue, int64_t n_item, c
 
     refresh(launch);
     bool compiles = dev->is_pocl && global > launch->largest;
-    int lock = compiles ? kernel_cache_lock(dev) : -1;
+    int lock = compiles ? kernel_cache_lock(dev, launch->program->cache_key) : -1;
     cl_int code = clEnqueueNDRangeKernel(
         queue, launch->kernel, 1, NULL, &global, &launch->local, n_wait, wait, done);
     if (code != CL_SUCCESS)

@@ -42,7 +42,8 @@ static void build(struct program *program, const char *source)
     cl_int code;
     program->id = clCreateProgramWithSource(program->dev->context, 1, &source, NULL, &code);
     check_cl_as(code, "clCreateProgramWithSource");
-    int lock = kernel_cache_lock(program->dev);
+    program->cache_key = kernel_cache_key(program->options, source);
+    int lock = kernel_cache_lock(program->dev, program->cache_key);
     code = clBuildProgram(program->id, 1, &program->dev->id, program->options, NULL, NULL);
     kernel_cache_unlock(lock);
     if (code != CL_SUCCESS) build_failed(program, source, code);

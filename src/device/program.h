@@ -11,8 +11,9 @@
 struct program {
     struct device *dev; /* borrowed */
     cl_program id;
-    char *name;    /* for messages */
-    char *options; /* as given to the compiler, complete */
+    char *name;         /* for messages */
+    char *options;      /* as given to the compiler, complete */
+    uint64_t cache_key; /* of options and source, for kernel_cache_lock */
     /* from -DREAL_IS_FLOAT=1 in the options: what kernels/common/types.h makes of `real` */
     bool real_is_float;
     bool position_is_float; /* likewise `preal`, from -DPOSITION_IS_FLOAT=1 */
