@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "buffer.h"
+#include "device.h"
 #include "comm/fail.h"
 #include "base/timer.h"
 #include "trace_parts.h"
@@ -41,12 +41,6 @@ void trace_free(struct trace *t)
     free(t);
 }
 
-int64_t trace_offset(const struct trace_bounds *bounds)
-{
-    return bounds->low <= 0 && bounds->high >= 0 ? 0
-                                                 : bounds->low + (bounds->high - bounds->low) / 2;
-}
-
 static void narrow(struct trace_bounds *bounds, int64_t low, int64_t high)
 {
     if (low > bounds->low) bounds->low = low;
@@ -64,15 +58,17 @@ static int64_t device_time(cl_event event, cl_profiling_info what)
  * wait. */
 static void compare_device(struct trace *t, int k)
 {
-    struct buffer small;
-    char byte;
-    buffer_init(&small, "trace clock");
-    buffer_reserve(t->dev, &small, 1);
+    char byte = 0;
+    cl_int error;
+    cl_mem small = clCreateBuffer(t->dev->context, CL_MEM_READ_ONLY, 1, NULL, &error);
+    check_cl(error);
+    check_cl(clEnqueueWriteBuffer(t->dev->compute, small, CL_TRUE, 0, 1, &byte, 0, NULL, NULL));
     t->device[k] = (struct trace_bounds){INT64_MIN, INT64_MAX};
     for (int i = 0; i < TRIES; i++) {
         cl_event event;
         int64_t before = now();
-        buffer_read_begin(t->dev, t->dev->compute, &small, 0, 1, &byte, 0, NULL, &event);
+        check_cl(
+            clEnqueueReadBuffer(t->dev->compute, small, CL_FALSE, 0, 1, &byte, 0, NULL, &event));
         check_cl(clWaitForEvents(1, &event));
         int64_t after = now();
         narrow(&t->device[k], before - device_time(event, CL_PROFILING_COMMAND_QUEUED),
@@ -80,7 +76,7 @@ static void compare_device(struct trace *t, int k)
         check_cl(clReleaseEvent(event));
     }
     t->device_at[k] = now();
-    buffer_free(t->dev, &small);
+    check_cl(clReleaseMemObject(small));
 }
 
 /* Clock of rank 0 minus the own. Nobody leaves a gather before all have entered: entry of rank 0 <=

@@ -47,7 +47,11 @@ struct trace {
 };
 
 /* 0 if the bounds allow it, else their middle. */
-int64_t trace_offset(const struct trace_bounds *bounds);
+static inline int64_t trace_offset(const struct trace_bounds *bounds)
+{
+    return bounds->low <= 0 && bounds->high >= 0 ? 0
+                                                 : bounds->low + (bounds->high - bounds->low) / 2;
+}
 
 /* Writes what all ranks have recorded. Collective. */
 void trace_write(const struct trace *trace);

@@ -9,46 +9,10 @@
 #include "scene_path.h"
 #include "scene_reader.h"
 
-static bool is_given(const struct scene_reader *reader, const char *path)
-{
-    return scene_path_find(reader->root, path) != NULL;
-}
-
-/* min < max in every direction, or at least min <= max of a box that may be flat. */
-static void check_box(struct scene_reader *reader, char *path, const double min[3],
-    const double max[3], bool may_be_flat)
-{
-    if (is_given(reader, path) && !scene_issue_is_below(reader, path))
-        for (int k = 0; k < 3; k++)
-            if (may_be_flat ? min[k] > max[k] : !(min[k] < max[k])) {
-                scene_issue_on(reader, path, "min must %s max in %c",
-                    may_be_flat ? "not be above" : "be below", "xyz"[k]);
-                break;
-            }
-    free(path);
-}
-
-static void check_cylinder(
-    struct scene_reader *reader, char *path, const double from[3], const double to[3])
-{
-    if (is_given(reader, path) && !scene_issue_is_below(reader, path) &&
-        memcmp(from, to, 3 * sizeof *from) == 0)
-        scene_issue_on(reader, path, "from and to are the same point");
-    free(path);
-}
-
-void scene_check_region(
-    struct scene_reader *reader, char *path, const struct region *region, bool may_be_flat)
-{
-    check_box(reader, fail_format("%s.box", path), region->min, region->max, may_be_flat);
-    check_cylinder(reader, fail_format("%s.cylinder", path), region->from, region->to);
-    free(path);
-}
-
 static void check_direction(struct scene_reader *reader, char *path, const double v[3])
 {
-    if (is_given(reader, path) && !scene_issue_is_below(reader, path) && v[0] == 0 && v[1] == 0 &&
-        v[2] == 0)
+    if (scene_check_is_given(reader, path) && !scene_issue_is_below(reader, path) && v[0] == 0 &&
+        v[1] == 0 && v[2] == 0)
         scene_issue_on(reader, path, "a direction must not be zero");
     free(path);
 }
@@ -60,7 +24,7 @@ static void check_elements(struct scene_reader *reader)
         scene_check_region(
             reader, fail_format("elements[%d].fill.region", k), &group->region, false);
         char *path = fail_format("elements[%d].shape", k);
-        if (is_given(reader, path) && !scene_issue_is_below(reader, path) &&
+        if (scene_check_is_given(reader, path) && !scene_issue_is_below(reader, path) &&
             group->diameter[0] > group->diameter[1])
             scene_issue_on(reader, path, "min must not be above max");
         free(path);
@@ -73,8 +37,10 @@ static void check_walls(struct scene_reader *reader)
         const struct wall *wall = &reader->scene->wall[k];
         check_direction(reader, fail_format("walls[%d].surface.plane.normal", k), wall->normal);
         check_direction(reader, fail_format("walls[%d].surface.rectangle.normal", k), wall->normal);
-        check_box(reader, fail_format("walls[%d].surface.box", k), wall->min, wall->max, false);
-        check_cylinder(reader, fail_format("walls[%d].surface.cylinder", k), wall->from, wall->to);
+        scene_check_box(
+            reader, fail_format("walls[%d].surface.box", k), wall->min, wall->max, false);
+        scene_check_cylinder(
+            reader, fail_format("walls[%d].surface.cylinder", k), wall->from, wall->to);
         check_direction(
             reader, fail_format("walls[%d].motion.rotation.axis", k), wall->rotation_axis);
         char *path = fail_format("walls[%d].motion", k),
@@ -98,7 +64,7 @@ static void check_hertz(struct scene_reader *reader, int k)
         static const char *const NEEDED_KEY[] = {"young", "poisson"};
         for (int n = 0; n < 2; n++) {
             char *path = fail_format("materials.%s.%s", scene->material[index].name, NEEDED_KEY[n]);
-            if (!is_given(reader, path))
+            if (!scene_check_is_given(reader, path))
                 scene_issue_on(reader, law, "hertz needs '%s' of material '%s'", NEEDED_KEY[n],
                     scene->material[index].name);
             free(path);
@@ -115,17 +81,18 @@ static void check_contact(struct scene_reader *reader, int k)
     char *law = fail_format("%s.law", normal),
          *ratio = fail_format("%s.stiffness_ratio", tangential);
     bool both = contact->between[0] >= 0 && contact->between[1] >= 0;
-    if (!is_given(reader, normal)) {
+    if (!scene_check_is_given(reader, normal)) {
         static const char *const PART[] = {"tangential", "rolling", "binding"};
         for (int n = 0; n < 3; n++) {
             char *part = fail_format("%s.%s", path, PART[n]);
-            if (is_given(reader, part)) scene_issue_on(reader, part, "needs 'normal' beside it");
+            if (scene_check_is_given(reader, part))
+                scene_issue_on(reader, part, "needs 'normal' beside it");
             free(part);
         }
-    } else if (is_given(reader, law) && !scene_issue_is_below(reader, law)) {
+    } else if (scene_check_is_given(reader, law) && !scene_issue_is_below(reader, law)) {
         if (contact->normal_law == NORMAL_HERTZ && both) check_hertz(reader, k);
-        if (contact->normal_law == NORMAL_LINEAR && is_given(reader, tangential) &&
-            !is_given(reader, ratio) && !scene_issue_is_below(reader, tangential))
+        if (contact->normal_law == NORMAL_LINEAR && scene_check_is_given(reader, tangential) &&
+            !scene_check_is_given(reader, ratio) && !scene_issue_is_below(reader, tangential))
             scene_issue_on(reader, tangential, "missing key 'stiffness_ratio' (law: linear)");
     }
     for (int other = 0; other < k && both; other++) {
@@ -184,7 +151,7 @@ static bool can_meet(const struct scene_reader *reader, int a, int b)
     return a == b ? n[0] > 1 : n[0] > 0 && n[1] > 0;
 }
 
-static void check_contacts(struct scene_reader *reader)
+static void check_contact_list(struct scene_reader *reader)
 {
     const struct scene *scene = reader->scene;
     bool all_known = true;
@@ -204,7 +171,7 @@ static void check_contacts(struct scene_reader *reader)
 static void check_domain(struct scene_reader *reader)
 {
     const struct domain *domain = &reader->scene->domain;
-    check_box(reader, fail_strdup("domain.box"), domain->min, domain->max, false);
+    scene_check_box(reader, fail_strdup("domain.box"), domain->min, domain->max, false);
     if ((domain->periodic[0] || domain->periodic[1] || domain->periodic[2]) && !domain->has_box)
         scene_issue_on(reader, "domain.periodic", "needs 'box': what repeats must have an extent");
 }
@@ -218,7 +185,8 @@ static void check_scheme(struct scene_reader *reader)
 static void check_time(struct scene_reader *reader)
 {
     const struct scene_time *time = &reader->scene->time;
-    if (!is_given(reader, "time.step") || scene_issue_is_below(reader, "time") || !(time->step > 0))
+    if (!scene_check_is_given(reader, "time.step") || scene_issue_is_below(reader, "time") ||
+        !(time->step > 0))
         return;
     if (!(time->end / time->step <= SCENE_STEPS_MOST))
         scene_issue_on(reader, "time.step", "%.3g steps until time.end are too many, at most %.0g",
@@ -235,7 +203,7 @@ void scene_check(struct scene_reader *reader)
     check_scheme(reader);
     check_elements(reader);
     check_walls(reader);
-    check_contacts(reader);
+    check_contact_list(reader);
     check_domain(reader);
 }
 

@@ -35,7 +35,7 @@ static bool find_file(
 void scene_table_file(const struct scene_place *p, const struct scene_node *node)
 {
     char *file, *absolute;
-    if (!scene_values_is_kind(p, node, NODE_SCALAR, "the path of a file") ||
+    if (!scene_is_kind(p, node, NODE_SCALAR, "the path of a file") ||
         !find_file(p, node, &file, &absolute))
         return;
     char **to = scene_key_place(p->key, p->record);
@@ -65,9 +65,8 @@ static bool read_pairs(
         own.path = fail_format("%s[%d]", p->path, k);
         bool is_pair = pair->kind == NODE_SEQUENCE && pair->n == 2;
         if (!is_pair) scene_issue_at(p->reader, pair, own.path, "expected [time, factor]");
-        bool read = is_pair && scene_values_number(&own, pair->item[0], own.path, &(*point)[k][0]);
-        good =
-            read && scene_values_number(&second, pair->item[1], own.path, &(*point)[k][1]) && good;
+        bool read = is_pair && scene_number(&own, pair->item[0], own.path, &(*point)[k][0]);
+        good = read && scene_number(&second, pair->item[1], own.path, &(*point)[k][1]) && good;
         if (read && good && k > 0 && !((*point)[k][0] > (*point)[k - 1][0])) {
             scene_issue_at(p->reader, pair, own.path, "times must ascend");
             good = false;
@@ -83,7 +82,7 @@ void scene_table_read(const struct scene_place *p, const struct scene_node *node
     char *file = NULL, *absolute = NULL, *problem = NULL;
     bool good = false;
     if (node->kind == NODE_SEQUENCE) good = read_pairs(p, node, &table.point);
-    else if (scene_values_is_kind(p, node, NODE_SCALAR, "a list of pairs, or a file,") &&
+    else if (scene_is_kind(p, node, NODE_SCALAR, "a list of pairs, or a file,") &&
              find_file(p, node, &file, &absolute)) {
         problem = history_read(&table, file);
         good = !problem;

@@ -15,15 +15,6 @@
 
 enum { MAX_WORDS = 32 };
 
-bool scene_values_is_kind(const struct scene_place *p, const struct scene_node *node,
-    enum scene_node_kind kind, const char *expected)
-{
-    if (node->kind == kind && !scene_yaml_is_null(node)) return true;
-    scene_issue_at(
-        p->reader, node, p->path, "expected %s, found %s", expected, scene_yaml_kind_name(node));
-    return false;
-}
-
 /* Splits "a|b|c" into `buffer`; returns the number of words. An empty word counts. */
 static int split_words(const char *words, char *buffer, size_t size, const char **word)
 {
@@ -65,30 +56,6 @@ static int find_word(const struct scene_place *p, const struct scene_node *node,
     return -1;
 }
 
-bool scene_values_number(
-    const struct scene_place *p, const struct scene_node *node, const char *path, double *value)
-{
-    const struct scene_key *key = p->key;
-    struct scene_place own = *p;
-    own.path = path;
-    if (!scene_values_is_kind(&own, node, NODE_SCALAR, "a number")) return false;
-    if (key->special && strcmp(node->text, key->special) == 0) {
-        *value = key->special_value;
-        return true;
-    }
-    char problem[256], range[64];
-    if (!units_parse(node->text, key->unit, value, problem, sizeof problem)) {
-        if (key->special)
-            scene_issue_at(p->reader, node, path, "%s, or '%s'", problem, key->special);
-        else scene_issue_at(p->reader, node, path, "%s", problem);
-        return false;
-    }
-    if (scene_key_in_range(&key->range, *value)) return true;
-    scene_key_range_text(&key->range, range, sizeof range);
-    scene_issue_at(p->reader, node, path, "%s is out of range: %s", node->text, range);
-    return false;
-}
-
 static void write_number(const struct scene_place *p, double value)
 {
     const struct scene_key *key = p->key;
@@ -112,7 +79,7 @@ static void read_vector(const struct scene_place *p, const struct scene_node *no
     double value[3];
     char expected[32];
     snprintf(expected, sizeof expected, "a list of %d numbers", n);
-    if (!scene_values_is_kind(p, node, NODE_SEQUENCE, expected)) return;
+    if (!scene_is_kind(p, node, NODE_SEQUENCE, expected)) return;
     if (node->n != n) {
         scene_issue_at(p->reader, node, p->path, "expected %s, found %d", expected, node->n);
         return;
@@ -121,7 +88,7 @@ static void read_vector(const struct scene_place *p, const struct scene_node *no
     for (int k = 0; k < n; k++) {
         char *path = fail_format("%s[%d]", p->path, k);
         if (p->key->special && scene_yaml_is_null(node->item[k])) value[k] = p->key->special_value;
-        else good = scene_values_number(p, node->item[k], path, &value[k]) && good;
+        else good = scene_number(p, node->item[k], path, &value[k]) && good;
         free(path);
     }
     if (!good) return;
@@ -137,7 +104,7 @@ static void read_vector(const struct scene_place *p, const struct scene_node *no
 static void read_integer(const struct scene_place *p, const struct scene_node *node)
 {
     double value;
-    if (!scene_values_number(p, node, p->path, &value)) return;
+    if (!scene_number(p, node, p->path, &value)) return;
     /* 2^53: beyond, doubles skip integers */
     if (value != floor(value) || fabs(value) > 9007199254740992.0) {
         scene_issue_at(p->reader, node, p->path, "expected a whole number, found %s", node->text);
@@ -154,7 +121,7 @@ static void read_bool(const struct scene_place *p, const struct scene_node *node
 {
     bool is_true = node->kind == NODE_SCALAR && strcmp(node->text, "true") == 0;
     if (!is_true && !(node->kind == NODE_SCALAR && strcmp(node->text, "false") == 0)) {
-        if (scene_values_is_kind(p, node, NODE_SCALAR, "true or false"))
+        if (scene_is_kind(p, node, NODE_SCALAR, "true or false"))
             scene_issue_at(
                 p->reader, node, p->path, "expected true or false, found '%s'", node->text);
         return;
@@ -169,7 +136,7 @@ static void read_choice(const struct scene_place *p, const struct scene_node *no
     char buffer[256];
     const char *word[MAX_WORDS];
     int n = split_words(p->key->words, buffer, sizeof buffer, word);
-    if (!scene_values_is_kind(p, node, NODE_SCALAR, "a word")) return;
+    if (!scene_is_kind(p, node, NODE_SCALAR, "a word")) return;
     int index = find_word(p, node, word, n, "word");
     if (index < 0) return;
     int *to = scene_key_place(p->key, p->record);
@@ -179,7 +146,7 @@ static void read_choice(const struct scene_place *p, const struct scene_node *no
 
 static void read_text(const struct scene_place *p, const struct scene_node *node)
 {
-    if (node->kind != NODE_SCALAR && !scene_values_is_kind(p, node, NODE_SCALAR, "text")) return;
+    if (node->kind != NODE_SCALAR && !scene_is_kind(p, node, NODE_SCALAR, "text")) return;
     if (p->key->type == KEY_NAME) {
         const char *problem = scene_values_name_problem(node);
         if (problem) {
@@ -224,7 +191,7 @@ static int find_reference(
     int n = type == KEY_WALL ? scene->n_wall : type == KEY_BODY ? scene->n_body : scene->n_material;
     char expected[32];
     snprintf(expected, sizeof expected, "the name of a %s", what);
-    if (!scene_values_is_kind(p, node, NODE_SCALAR, expected)) return -1;
+    if (!scene_is_kind(p, node, NODE_SCALAR, expected)) return -1;
     if (n == 0 && scene_issue_is_below(p->reader, list)) return -1;
     const char **name = fail_alloc((size_t)n * sizeof *name);
     for (int k = 0; k < n; k++) name[k] = referred_name(scene, type, k);
@@ -245,7 +212,7 @@ static void read_reference(const struct scene_place *p, const struct scene_node 
 
 static void read_pair(const struct scene_place *p, const struct scene_node *node)
 {
-    if (!scene_values_is_kind(p, node, NODE_SEQUENCE, "a list of two materials")) return;
+    if (!scene_is_kind(p, node, NODE_SEQUENCE, "a list of two materials")) return;
     if (node->n != 2) {
         scene_issue_at(
             p->reader, node, p->path, "expected a list of two materials, found %d", node->n);
@@ -274,11 +241,11 @@ static int read_word_list(const struct scene_place *p, const struct scene_node *
     const char *word[MAX_WORDS];
     int n_word = split_words(words, buffer, sizeof buffer, word), n = 0;
     snprintf(expected, sizeof expected, "a list of %ss", what);
-    if (!scene_values_is_kind(p, node, NODE_SEQUENCE, expected)) return 0;
+    if (!scene_is_kind(p, node, NODE_SEQUENCE, expected)) return 0;
     for (int k = 0; k < node->n; k++) {
         struct scene_place own = *p;
         own.path = fail_format("%s[%d]", p->path, k);
-        int found = scene_values_is_kind(&own, node->item[k], NODE_SCALAR, "a word")
+        int found = scene_is_kind(&own, node->item[k], NODE_SCALAR, "a word")
                         ? find_word(&own, node->item[k], word, n_word, what)
                         : -1;
         bool again = false;
@@ -321,10 +288,10 @@ void scene_values_read(struct scene_reader *reader, const struct scene_key *key,
     double value;
     switch (key->type) {
     case KEY_NUMBER:
-        if (scene_values_number(&p, node, path, &value)) store_number(&p, value, 1);
+        if (scene_number(&p, node, path, &value)) store_number(&p, value, 1);
         break;
     case KEY_SPAN: /* as a number: both ends */
-        if (scene_values_number(&p, node, path, &value)) store_number(&p, value, 2);
+        if (scene_number(&p, node, path, &value)) store_number(&p, value, 2);
         break;
     case KEY_VECTOR: read_vector(&p, node); break;
     case KEY_INTEGER: read_integer(&p, node); break;

@@ -12,12 +12,13 @@ struct scene_place {
     void *record;
 };
 
-/* Whether the node is something of that kind; else an issue: "expected ..., found ...". */
-bool scene_values_is_kind(const struct scene_place *p, const struct scene_node *node,
+/* scene_number.c. Whether the node is something of that kind; else an issue: "expected ..., found
+ * ...". */
+bool scene_is_kind(const struct scene_place *p, const struct scene_node *node,
     enum scene_node_kind kind, const char *expected);
 /* The number at the node, with the unit and range of the place's key; `path` is where it stands.
  * False and an issue where it is none. */
-bool scene_values_number(
+bool scene_number(
     const struct scene_place *p, const struct scene_node *node, const char *path, double *value);
 
 /* KEY_FILE, KEY_TABLE (scene_table.c) */

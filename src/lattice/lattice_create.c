@@ -1,0 +1,159 @@
+/* Set-up of the lattice: who owns what, what lies where, tables, kernels. */
+#include "lattice.h"
+
+#include <stdlib.h>
+
+#include "kernels/lattice/lattice_words.h"
+#include "comm/fail.h"
+#include "lattice_break.h"
+#include "lattice_owners.h"
+
+static const char *const sources[] = {"link_force.cl", "lattice_pack.cl", NULL};
+static const char *const sources_volume[] = {
+    "link_force.cl", "link_volume.cl", "lattice_pack.cl", NULL};
+
+static void put_ints(
+    struct lattice *l, struct buffer *buffer, const char *name, const int *value, int64_t n)
+{
+    buffer_init(buffer, name);
+    buffer_reserve(l->dev, buffer, (size_t)n * sizeof *value);
+    buffer_write(l->dev, buffer, 0, (size_t)n * sizeof *value, value);
+}
+
+static void put_table(
+    struct lattice *l, struct buffer *buffer, const char *name, double *value, int64_t n)
+{
+    buffer_init(buffer, name);
+    buffer_reserve(l->dev, buffer, (size_t)n * lattice_v_bytes(l));
+    lattice_put(l, buffer, l->features.real_is_float, value, n);
+    free(value);
+}
+
+static void create_state(struct lattice *l)
+{
+    size_t n = (size_t)l->layout->plane, n_x = LATTICE_X(l->features.turn),
+           n_set = l->features.rk ? 3 : 2;
+    size_t n_last = l->features.energy && l->features.nystrom ? LATTICE_V : 0,
+           n_p = l->features.energy && l->features.link_damping ? 2 : 1;
+    struct buffer *all[] = {&l->x, &l->v, &l->sum_x, &l->sum_v, &l->pressure, &l->ledger};
+    static const char *const name[] = {"lattice x", "lattice v", "lattice sums of x",
+        "lattice sums of v", "lattice pressure", "lattice ledger"};
+    const size_t bytes[] = {n_set * n_x * n * lattice_x_bytes(l),
+        n_set * LATTICE_V * n * lattice_v_bytes(l), l->features.rk ? 9 * n * lattice_x_bytes(l) : 0,
+        l->features.rk ? (LATTICE_V + n_last) * n * lattice_v_bytes(l) : 0,
+        l->features.volume ? n_p * n * lattice_v_bytes(l) : 0,
+        l->features.energy ? LATTICE_LEDGER * n * sizeof(double) : 0};
+    for (int k = 0; k < 6; k++) {
+        buffer_init(all[k], name[k]);
+        buffer_reserve(l->dev, all[k], bytes[k]);
+        buffer_zero(l->dev, all[k]);
+    }
+}
+
+static void create_tables(struct lattice *l, const struct lattice_cells *cells)
+{
+    const struct lattice_layout *c = l->layout;
+    int n = cells->n_kind;
+    put_ints(l, &l->word, "lattice words", c->word, c->plane);
+    put_ints(l, &l->row, "lattice rows", c->row, c->plane);
+    put_ints(l, &l->info, "lattice runs", c->info, c->n_run);
+    put_ints(l, &l->base, "lattice bases", c->base, 4 * (int64_t)c->n_run);
+    put_ints(l, &l->force_list, "lattice forces", c->force, c->n_force);
+    put_ints(l, &l->volume_list, "lattice volumes", c->volume, c->n_volume);
+    put_table(l, &l->link, "lattice links", lattice_features_links(cells, &l->options),
+        (int64_t)n * n * LINK_WIDTH);
+    put_table(l, &l->cell, "lattice kinds", lattice_features_cells(cells, &l->options),
+        (int64_t)n * CELL_WIDTH);
+    if (l->features.rk) put_table(l, &l->kick, "lattice kicks", fail_alloc(sizeof(double)), 1);
+    else
+        put_table(l, &l->kick, "lattice kicks", lattice_features_kicks(cells, &l->options),
+            (int64_t)(l->scheme->n + 2) * n * KICK_WIDTH);
+    lattice_rows_create(l);
+}
+
+/* At rest in place, then the cells' velocities. */
+static void first_state(struct lattice *l, const struct lattice_cells *cells)
+{
+    int64_t n = l->layout->n_owned, plane = l->layout->plane;
+    struct lattice_motion m = {.v = cells->v ? fail_alloc((size_t)n * sizeof *m.v) : NULL,
+        .w = cells->w ? fail_alloc((size_t)n * sizeof *m.w) : NULL};
+    double *one = fail_alloc((size_t)plane * sizeof *one);
+    for (int64_t i = 0; i < plane; i++) one[i] = 1;
+    /* no rotation, also of what is not there */
+    for (int set = 0; set < (l->features.rk ? 3 : 2) && l->features.turn; set++) {
+        struct buffer part = l->x;
+        float *single = fail_alloc((size_t)plane * sizeof *single);
+        for (int64_t i = 0; i < plane; i++) single[i] = 1;
+        size_t bytes = lattice_x_bytes(l), at = (size_t)(7 * set + 3) * (size_t)plane * bytes;
+        buffer_write(l->dev, &part, at, (size_t)plane * bytes,
+            l->features.position_is_float ? (void *)single : (void *)one);
+        free(single);
+    }
+    for (int64_t k = 0; k < n; k++)
+        for (int a = 0; a < 3; a++) {
+            if (m.v) m.v[k][a] = cells->v[l->layout->gid[k]][a];
+            if (m.w) m.w[k][a] = cells->w[l->layout->gid[k]][a];
+        }
+    lattice_write(l, &m);
+    free(m.v);
+    free(m.w);
+    free(one);
+}
+
+struct lattice *lattice_create(struct device *dev, const struct comm *comm,
+    const struct lattice_cells *cells, const struct lattice_options *options)
+{
+    struct lattice *l = fail_alloc(sizeof *l);
+    l->dev = dev;
+    l->timers = &l->unread;
+    l->comm = comm;
+    l->options = *options;
+    l->scheme = lattice_schemes_table(options->scheme);
+    l->features = lattice_features_of(cells, options);
+    l->n_global = cells->n;
+    l->n_kind = cells->n_kind;
+    struct lattice_lay run = options->run.length > 0 ? options->run : lattice_layout_run(cells);
+    int *owner = lattice_owners(comm, cells, options, run.axis);
+    l->layout = lattice_layout_create(
+        cells, owner, comm->rank, comm->n_rank, run, l->features.volume ? 2 : 1);
+    char *text = lattice_features_options(&l->features, l->layout);
+    l->program =
+        program_build(dev, comm, "lattice", text, l->features.volume ? sources_volume : sources);
+    free(text);
+    create_state(l);
+    create_tables(l, cells);
+    l->force = lattice_launch(l, l->program, "link_force", &l->force_list);
+    if (l->features.volume)
+        l->volume = lattice_launch(l, l->program, "link_volume", &l->volume_list);
+    if (l->scheme->first > 0)
+        l->first = lattice_launch(l, l->program, "lattice_first", &l->force_list);
+    if (comm->n_rank > 1)
+        l->halo = lattice_halo_create(dev, comm, l->program, l->layout, &l->x,
+            LATTICE_X(l->features.turn), lattice_x_bytes(l), &l->v,
+            l->features.link_damping ? LATTICE_V : 0, lattice_v_bytes(l),
+            l->features.breakage ? &l->word : NULL);
+    l->part =
+        lattice_owners_part(cells, owner, comm->rank, l->halo ? l->halo->exchange.halo->n_send : 0);
+    free(owner);
+    if (l->features.breakage) l->breakage = lattice_break_create(l, cells);
+    first_state(l, cells);
+    return l;
+}
+
+void lattice_free(struct lattice *l)
+{
+    if (!l) return;
+    device_finish(l->dev);
+    struct buffer *all[] = {&l->x, &l->v, &l->sum_x, &l->sum_v, &l->pressure, &l->ledger, &l->word,
+        &l->info, &l->base, &l->force_list, &l->volume_list, &l->row, &l->link, &l->cell, &l->kick};
+    lattice_halo_free(l->dev, l->halo);
+    lattice_break_free(l->breakage);
+    lattice_rows_free(l);
+    launch_free(l->force);
+    launch_free(l->volume);
+    launch_free(l->first);
+    program_free(l->program);
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) buffer_free(l->dev, all[k]);
+    lattice_layout_free(l->layout);
+    free(l);
+}
