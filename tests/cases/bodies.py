@@ -11,8 +11,7 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
 import numpy  # noqa: E402
 
-import expect  # noqa: E402
-import frames  # noqa: E402
+from democles import expect, frames  # noqa: E402
 
 DEMOCLES = None
 

@@ -20,11 +20,7 @@ sys.path.insert(0, str(SCRIPTS))
 import numpy  # noqa: E402
 from matplotlib import pyplot  # noqa: E402
 
-import frames  # noqa: E402
-import plot  # noqa: E402
-import render  # noqa: E402
-import render_view  # noqa: E402
-import render_walls  # noqa: E402
+from democles import frames, plot, render_picture, render_view, render_walls  # noqa: E402
 
 SCENE = """title: "three spheres"
 gravity: [0, 0, -9.81]
@@ -114,7 +110,7 @@ class Drawing(unittest.TestCase):
     def test_prefix_suits_the_largest_value(self):
         for unit, high, expected in (("Pa", 8e7, (1e6, "M")), ("m/s", 0.13, (1, "")), ("m", 2e-3, (1e-3, "m")), ("N", 7e-5, (1e-6, "\u00b5")),
                                      ("kg", 1e-6, (1, "")), ("", 1e6, (1, ""))):
-            colours = render.Colours.__new__(render.Colours)
+            colours = render_picture.Colours.__new__(render_picture.Colours)
             colours.low, colours.high, colours.unit = 0.0, high, unit
             self.assertEqual(colours.prefix(), expected, unit)
 
@@ -163,8 +159,8 @@ class Solid:
 class Warp(unittest.TestCase):
     def test_small_displacements_are_magnified_large_ones_are_not_made_smaller(self):
         for by, factor in ((1e-3, 50), (0.03, 2), (0.09, 1), (5, 1)):
-            self.assertEqual(render.magnification([Solid(by)]), factor)
-        self.assertEqual(render.magnification([Made([[0, 0, 0]], [1])]), 1)
+            self.assertEqual(render_picture.magnification([Solid(by)]), factor)
+        self.assertEqual(render_picture.magnification([Made([[0, 0, 0]], [1])]), 1)
 
 
 class Folder(unittest.TestCase):

@@ -9,8 +9,7 @@ import unittest
 
 SCRIPTS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "scripts")
 sys.path.insert(1, SCRIPTS)
-import model  # noqa: E402
-import study  # noqa: E402
+from democles import model, study  # noqa: E402
 
 
 def spread(value):

@@ -12,7 +12,7 @@ import unittest
 import parallel_scenes
 
 sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "scripts"))
-import frames  # noqa: E402
+from democles import frames, mpi  # noqa: E402
 
 HANG = 240  # seconds after which a run counts as hanging: minutes, for the machine may be busy
 DEMOCLES, MPIRUN, CASES, OWN, MPIRUN_ARGS = None, None, None, [], []
@@ -48,7 +48,7 @@ class Run:
         """(kind, element, partner) -> state and history of all contacts in the last frame."""
         frame, found = frames.Frame(self.frames()[-1]), {}
         for kind, partner in (("pairs", "partner"), ("wall_contacts", "primitive")):
-            columns = {name: frames._dataset(frame.path, f"democles/{kind}/{name}") for name in ("id", partner, "state", "history")}
+            columns = {name: frames.state(frame.path, f"{kind}/{name}") for name in ("id", partner, "state", "history")}
             if columns["id"] is None or not len(columns["id"]):
                 continue
             rest = [c for c in (columns["state"], columns["history"]) if c is not None]

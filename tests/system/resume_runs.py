@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 """A run that goes on from a frame is the run that was never interrupted, to the bit: state, contacts, broken links, measures, energies; on any ranks.
 Own arguments: results_tool, the tests."""
-import ctypes
 import os
 import re
 import subprocess
 
+import h5py
 import numpy
 import yaml
 
@@ -31,24 +31,13 @@ def state(path):
     """table/column -> bytes, in an order that no rank has a part in."""
     found = {}
     for table, (keys, columns) in TABLES.items():
-        key = [frames._dataset(str(path), f"democles/{table}/{name}") for name in keys]
+        key = [frames.state(path, f"{table}/{name}") for name in keys]
         order = numpy.lexsort(key[::-1]) if key and key[0] is not None else slice(None)
         for name in keys + columns:
-            values = frames._dataset(str(path), f"democles/{table}/{name}")
+            values = frames.state(path, f"{table}/{name}")
             if values is not None:
                 found[f"{table}/{name}"] = values[order].tobytes()
     return found
-
-
-def number(path, name):
-    """An integer attribute of the state."""
-    library, value = frames._hdf5, ctypes.c_int64()
-    file = library.H5Fopen(str(path).encode(), 0, 0)
-    attribute = library.H5Aopen_by_name(file, b"democles", name.encode(), 0, 0)
-    library.H5Aread(attribute, library.H5Aget_type(attribute), ctypes.byref(value))
-    library.H5Aclose(attribute)
-    library.H5Fclose(file)
-    return value.value
 
 
 class Case(robust_jobs.Case):
@@ -87,7 +76,7 @@ class Particles(Case):
         with self.subTest(scene=name, precision=precision):
             scene, args = self.scene(name), ("--precision", precision, "--set", f"partition.boundary={boundary}")
             whole = self.good_run(scene, ranks[0], *args, name="whole")
-            record, built_at = whole.record(), number(whole.frames()[-1], "built_at")
+            record, built_at = whole.record(), frames.attribute(whole.frames()[-1], "built_at")
             self.assertGreater(built_at - 1, stop)
             found = self.same(whole, self.parts(scene, (stop, built_at - 1), record["steps"], ranks[1:], *args))
             for column in columns:
@@ -209,30 +198,16 @@ class Wrong(Case):
 
     def test_versions(self):
         """Another version of the format, and a dataset less: no damage that a checksum could find."""
-        library, hid, text, number = frames._hdf5, ctypes.c_int64, ctypes.c_char_p, ctypes.c_int64(99)
-        for function, result, arguments in (("H5Ldelete", ctypes.c_int, (hid, text, hid)),
-                                            ("H5Adelete_by_name", ctypes.c_int, (hid, text, text, hid)),
-                                            ("H5Acreate_by_name", hid, (hid, text, text, hid, hid, hid, hid, hid)),
-                                            ("H5Awrite", ctypes.c_int, (hid, hid, ctypes.c_void_p)), ("H5Screate", hid, (ctypes.c_int,))):
-            getattr(library, function).restype, getattr(library, function).argtypes = result, arguments
-        newest = str(self.whole_run.frames()[-1]).encode()
+        def less(state):
+            del state["elements/torque"]
 
-        def change(act):
-            file = library.H5Fopen(newest, 1, 0)  # to read and write
-            self.assertGreaterEqual(act(file), 0)
-            library.H5Fclose(file)
+        def other_version(state):
+            state.attrs["format_version"] = 99
 
-        def other_version(file):
-            kind = hid.in_dll(library, "H5T_STD_I64LE_g")
-            library.H5Adelete_by_name(file, b"democles", b"format_version", 0)
-            attribute = library.H5Acreate_by_name(file, b"democles", b"format_version", kind, library.H5Screate(0), 0, 0, 0)
-            done = library.H5Awrite(attribute, kind, ctypes.byref(number))
-            library.H5Aclose(attribute)
-            return done
-
-        for act, says in ((lambda file: library.H5Ldelete(file, b"democles/elements/torque", 0), r"it has \d+ of \d+ datasets"),
-                          (other_version, "its format version is 99, this program's")):
-            change(act)
+        newest = self.whole_run.frames()[-1]
+        for change, says in ((less, r"it has \d+ of \d+ datasets"), (other_version, "its format version is 99, this program's")):
+            with h5py.File(newest, "r+") as file:
+                change(file["democles"])
             run = self.resume(self.whole_run.dir, 1, "--steps", "50")
             self.assertRegex(run.err, "frame_000003.hdf' cannot be used: " + says)
             self.assertEqual(run.record()["digest"], self.end)

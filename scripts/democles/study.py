@@ -6,7 +6,8 @@ import pathlib
 import shutil
 import subprocess
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+from democles import mpi
+
 PARTS = ("compute", "exchange", "wait", "regroup")  # of the loop's time, disjoint here: exchange without wait
 
 # Speed-up and efficiency [%] as the seed report prints them (VEDO and Iris, National Taiwan University; base: one processor).
@@ -31,15 +32,14 @@ def numbers(text):
 def run(program, scene, folder, ranks, *args):
     """Runs, replacing what is in the folder; a scene that is a folder of results goes on from its newest frame. Returns exit code and stderr."""
     # a core for each rank: else one rank alone would have them all, and two could not be faster
-    env = {"POCL_MAX_PTHREAD_COUNT": "1", "POCL_MAX_COMPUTE_UNITS": "1", **os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1",
-           "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_btl_vader_single_copy_mechanism": "none"}
+    env = {"POCL_MAX_PTHREAD_COUNT": "1", "POCL_MAX_COMPUTE_UNITS": "1", **mpi.environment()}
     command = [str(program), "run", str(scene), "-o", str(folder), "--force"]
     if scene.is_dir():
         take_up(scene, folder)
         command = [str(program), "resume", str(folder)]
     command += ["--quiet", *args]
     if ranks > 1:
-        command = ["mpirun", "-n", str(ranks), "--oversubscribe", "--bind-to", "none", "--mca", "mpi_yield_when_idle", "1", *command]
+        command = mpi.command("-n", str(ranks), *command)
     done = subprocess.run(command, env=env, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False)
     return done.returncode, done.stderr
 

@@ -8,7 +8,7 @@ from vtkmodules.vtkFiltersCore import vtkFeatureEdges
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow, vtkWindowToImageFilter
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLSphereMapper
 
-import render_walls
+from democles import render_walls
 
 WALL, EDGE = (0.45, 0.52, 0.60), (0.25, 0.30, 0.36)
 

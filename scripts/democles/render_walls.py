@@ -9,7 +9,7 @@ from vtkmodules.vtkCommonMath import vtkMatrix4x4
 from vtkmodules.vtkFiltersCore import vtkCleanPolyData
 from vtkmodules.vtkIOGeometry import vtkSTLReader
 
-from frames import number
+from democles.frames import number
 
 CYLINDER_SIDES = 96
 

@@ -1,0 +1,70 @@
+"""Pictures and films of a run: elements as spheres coloured by a field, walls as glass; a solid with its displacements magnified.
+
+    scripts/render.py DIR                    DIR/overview.png: up to four moments of the run side by side
+    scripts/render.py DIR --frame last       DIR/frame_000123.png: one frame, by number, `first` or `last`
+    scripts/render.py DIR --film             DIR/film.mp4: all frames
+
+Works without a display (it starts itself again under xvfb-run)."""
+import argparse
+import math
+import os
+import shutil
+import sys
+
+
+def numbers(n, separator, kind, is_good, what):
+    """Type of an option of n numbers; what: how it looks, for the message."""
+    def read(text):
+        try:
+            values = [kind(word) for word in text.split(separator)]
+        except ValueError:
+            values = []
+        if len(values) != n or not all(map(math.isfinite, values)) or not is_good(values):
+            raise argparse.ArgumentTypeError(f"'{text}': expected {what}")
+        return values
+    return read
+
+
+def frame_name(text):
+    if text not in ("first", "last") and not text.isdecimal():
+        raise argparse.ArgumentTypeError(f"'{text}': expected a number, first, or last")
+    return text
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("dir", metavar="DIR", help="folder of results")
+    parser.add_argument("--frame", metavar="N", type=frame_name, help="one frame: its number, first, or last")
+    parser.add_argument("--film", action="store_true", help="all frames as MP4 (needs ffmpeg)")
+    parser.add_argument("--field", metavar="NAME", help="colour by this field; a vector by its magnitude (default: velocity)")
+    parser.add_argument("--range", metavar="LOW,HIGH", type=numbers(2, ",", float, lambda v: v[0] < v[1], "two numbers, as 0,1.5"),
+                        help="ends of the colour bar (default: from the frames)")
+    parser.add_argument("--warp", metavar="FACTOR", type=float,
+                        help="magnify the displacements of a solid (default: to a twelfth of its size, if they are smaller)")
+    parser.add_argument("--view", metavar="X,Y,Z", type=numbers(3, ",", float, any, "a direction, as 1,0,0.5"),
+                        help="direction from which to look (default: along the thinnest extent, slightly turned)")
+    parser.add_argument("--size", metavar="WxH", type=numbers(2, "x", int, lambda v: min(v) >= 100, "pixels, as 1600x1000, at least 100 each"),
+                        help="pixels (default: 1600x1000, film 1280x720)")
+    parser.add_argument("--fps", type=numbers(1, None, float, lambda v: v[0] > 0, "a number above 0"),
+                        help="frames of the film per second (default: a film of about 8 s, 5 to 25 per second)")
+    parser.add_argument("--plain", action="store_true", help="no title, times, colour bar and scale")
+    parser.add_argument("-o", metavar="FILE", dest="out", help="picture or film to write")
+    return parser.parse_args()
+
+
+def ensure_display():
+    """VTK of Debian 12 draws through X only."""
+    if os.environ.get("DISPLAY"):
+        return
+    if os.environ.get("DEMOCLES_RENDER_XVFB") or not shutil.which("xvfb-run"):
+        sys.exit("render: no display; install xvfb and xauth (scripts/setup does)")
+    os.environ["DEMOCLES_RENDER_XVFB"] = "1"
+    screen = ["xvfb-run", "-a", "-s", "-screen 0 1280x1024x24"]
+    os.execvp(screen[0], screen + [sys.executable, os.path.abspath(sys.argv[0]), *sys.argv[1:]])
+
+
+def main():
+    options = arguments()
+    ensure_display()
+    from democles import render_picture  # nothing heavy before the second start
+    print(render_picture.draw(options))
