@@ -5,7 +5,9 @@
  * other than this one must not take it either, see signals_hold. */
 #include "graph.h"
 
+#if HAVE_METIS
 #include <metis.h>
+#endif
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -51,6 +53,7 @@ static void fill_empty(int n, int n_part, int *part)
     free(count);
 }
 
+#if HAVE_METIS
 /* Weights as METIS numbers: it adds them up in 32 bits. */
 static idx_t *scaled(const int64_t *value, int64_t n, int64_t least)
 {
@@ -101,6 +104,15 @@ static void call_metis(const struct graph *g, int n_part, const int64_t *share, 
     void *all[] = {begin, to, weight, link, found, target};
     for (int k = 0; k < 6; k++) free(all[k]);
 }
+#else
+/* The check of a scene has refused `method: graph` before. */
+static void call_metis(const struct graph *g, int n_part, const int64_t *share, int *part)
+{
+    (void)share;
+    (void)part;
+    fail_stop(EXIT_USAGE, "%d parts of a graph of %d vertices need METIS", n_part, g->n);
+}
+#endif
 
 void graph_partition(const struct graph *graph, int n_part, const int64_t *share, int *part)
 {

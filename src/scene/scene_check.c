@@ -193,9 +193,18 @@ static void check_time(struct scene_reader *reader)
             time->end / time->step, SCENE_STEPS_MOST);
 }
 
+static void check_partition(struct scene_reader *reader)
+{
+    if (!HAVE_METIS && reader->scene->partition.method == PARTITION_GRAPH)
+        scene_issue_on(reader, "partition.method",
+            "graph needs METIS, without which this program was built; "
+            "take geometric or interactions");
+}
+
 void scene_check(struct scene_reader *reader)
 {
     check_time(reader);
+    check_partition(reader);
     if (reader->scene->method == METHOD_LATTICE) {
         scene_check_lattice(reader);
         return;

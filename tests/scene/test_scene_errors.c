@@ -83,6 +83,10 @@ static void what_is_not_here_yet(void **state)
     struct fixture *f = *state;
     fixture_expect_one(f, SCENE(ONE "partition: {method: grpah}\n"),
         "scene.yaml:5:21: partition.method: unknown word 'grpah'; did you mean 'graph'?");
+    if (!HAVE_METIS)
+        fixture_expect_one(f, SCENE(ONE "partition: {method: graph}\n"),
+            "scene.yaml:5:21: partition.method: graph needs METIS, without which this program was "
+            "built; take geometric or interactions");
     fixture_expect_one(f, SCENE(ONE "partition: {boundary: one}\n"),
         "scene.yaml:5:23: partition.boundary: unknown word 'one'; there is: both, assigned");
 }

@@ -70,7 +70,7 @@ class Scaling(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             program = os.path.join(folder, "program")
             with open(program, "w") as file:
-                file.write(f'#!/bin/sh\n[ "${{OMPI_COMM_WORLD_SIZE:-1}}" = 2 ] && set -- "$@" --steps 7\nexec "{DEMOCLES}" "$@"\n')
+                file.write(f'#!/bin/sh\n[ "${{OMPI_COMM_WORLD_SIZE:-${{PMI_SIZE:-1}}}}" = 2 ] && set -- "$@" --steps 7\nexec "{DEMOCLES}" "$@"\n')
             os.chmod(program, 0o755)
             run = self.study(folder, "--ranks", "1,2", "--program", program)
             self.assertEqual(run.returncode, 1)

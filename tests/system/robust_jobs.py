@@ -9,6 +9,7 @@ import time
 
 import parallel_runs
 import parallel_scenes
+from parallel_runs import mpi
 
 SOON = 60  # seconds within which a job has to end once somebody wants it to; the machine may be busy
 
@@ -39,15 +40,15 @@ class Job:
         """Rank -> process id."""
         if self.ranks == 1:
             return {0: self.process.pid}
-        found = {}
+        found, variable = {}, mpi.rank_variable().encode()
         for path in glob.glob("/proc/[0-9]*/environ"):
             try:
                 with open(path, "rb") as file:
                     environ = dict(word.split(b"=", 1) for word in file.read().split(b"\0") if b"=" in word)
                 pid = int(path.split("/")[2])
                 is_ours = os.getsid(pid) == self.process.pid and os.readlink(f"/proc/{pid}/exe") == parallel_runs.DEMOCLES
-                if is_ours and b"OMPI_COMM_WORLD_RANK" in environ:
-                    found[int(environ[b"OMPI_COMM_WORLD_RANK"])] = pid
+                if is_ours and variable in environ:
+                    found[int(environ[variable])] = pid
             except (OSError, ProcessLookupError):
                 continue
         if sorted(found) != list(range(self.ranks)):

@@ -37,7 +37,7 @@ def why_not():
     missing = [tool for tool in TOOLS if not shutil.which(tool)]
     if missing:
         return f"there is no {missing[0]}"
-    if shutil.which("mpirun") and "Open MPI" not in subprocess.run(["mpirun", "--version"], capture_output=True, text=True).stdout:
+    if not parallel_runs.mpi.is_open_mpi():
         return "mpirun is not Open MPI's"
     probe = "mount -t tmpfs none /mnt && ip link add probe type bridge && ip link add one type veth peer name two && hostname probe"
     try:
@@ -93,11 +93,11 @@ def inside(program, stage, shared, slots, args):
     call("umount", STAGE)
     call("mount", "-t", "tmpfs", "none", "/tmp")
     os.chdir("/")
-    env = {**os.environ, "TMPDIR": "/tmp", "HOME": "/tmp", "POCL_CACHE_DIR": "/tmp/kernels"}
+    env = {**parallel_runs.mpi.environment(), "TMPDIR": "/tmp", "HOME": "/tmp", "POCL_CACHE_DIR": "/tmp/kernels"}
     hosts = ",".join(f"{NET}.{k}:{n}" for k, n in enumerate(slots, 1))
     over_tcp = {"btl": "tcp,self", "btl_tcp_if_include": f"{NET}.0/24", "oob_tcp_if_include": f"{NET}.0/24", "plm": "rsh", "plm_rsh_agent": AGENT,
                 "plm_rsh_no_tree_spawn": "1"}
-    command = ["mpirun", "--allow-run-as-root", "--bind-to", "none", "--oversubscribe", "--host", hosts, "-n", str(sum(slots))]
+    command = parallel_runs.mpi.command("--host", hosts, "-n", str(sum(slots)))
     for name, value in over_tcp.items():
         command += ["--mca", name, value]
     for name in ("TMPDIR", "HOME", "POCL_CACHE_DIR"):
