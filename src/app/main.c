@@ -24,10 +24,9 @@ static int run(struct comm *comm, struct options *options)
     const char *given = goes_on ? options->operand : options->run.dir;
     char *dir = given ? fail_strdup(given) : fail_format("out/%s", scene->name);
     options->run.dir = dir;
-    options->run.from = from;
     signals_install();
     const struct step_ops *ops = scene->method == METHOD_LATTICE ? &lattice_ops : &particle_ops;
-    struct sim *sim = sim_create(scene, comm, log, ops, &options->run);
+    struct sim *sim = sim_create(scene, comm, log, ops, from, &options->run);
     int code = sim_run(sim);
     sim_free(sim);
     log_free(log);

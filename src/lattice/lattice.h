@@ -62,7 +62,7 @@ void lattice_free(struct lattice *l); /* NULL is fine */
  * Others: the whole step that leads here, observed or not. */
 void lattice_advance(struct lattice *l, bool observe);
 /* After an observed step, and at the start: on to the next. */
-void lattice_resume(struct lattice *l);
+void lattice_begin_step(struct lattice *l);
 
 /* The observed state of this rank's cells, in the order of layout->gid, [n_owned] each; theta is of
  * small rotations, q (w, x, y, z) of any. Those that are NULL are left out. */

@@ -91,7 +91,7 @@ static void measure_broken(const struct sim *s, double *value)
     for (int mode = 0; mode < LATTICE_BREAK_MODES; mode++) value[mode] = (double)count[mode];
 }
 
-void lattice_method_measure(struct sim *s, const bool *due, double (*value)[MEASURE_COLUMNS])
+void lattice_method_measure(struct sim *s, const bool *due, double (*value)[STEP_MEASURE_COLUMNS])
 {
     bool by_cell = false, by_energy = false;
     for (int i = 0; i < s->scene->n_measure; i++) {

@@ -87,7 +87,7 @@ static struct lattice *create(struct sim *s)
 static void measure(struct sim *s)
 {
     struct lattice *l = create(s);
-    lattice_resume(l);
+    lattice_begin_step(l);
     for (int k = 0; k < FIRST_STEPS; k++) lattice_advance(l, false);
     device_finish(s->dev);
     balance_go_on(s->balance, &s->timers, 0);
@@ -121,11 +121,6 @@ static void setup(struct sim *s)
     else lattice_energy_now(r->account, &r->energy_start);
 }
 
-static void warn(struct sim *s)
-{
-    (void)s; /* what is not wise in a lattice scene, `check` says */
-}
-
 static void release(struct sim *s)
 {
     if (!s->lattice) return;
@@ -138,27 +133,15 @@ static void release(struct sim *s)
     free(s->lattice);
 }
 
-static bool stale(struct sim *s)
-{
-    (void)s;
-    return false;
-}
-
-/* Cells keep their neighbours and their rank. */
-static void regroup(struct sim *s)
-{
-    (void)s;
-}
-
 static void advance(struct sim *s, bool observe)
 {
     lattice_advance(s->lattice->lattice, observe);
     if (watch_due(s->step)) watch_vote(&s->watch, s->comm, output_stop_wanted(s) ? WATCH_STOP : 0);
 }
 
-static void resume(struct sim *s)
+static void begin_step(struct sim *s)
 {
-    lattice_resume(s->lattice->lattice);
+    lattice_begin_step(s->lattice->lattice);
 }
 
 static bool is_at_rest(struct sim *s)
@@ -271,17 +254,13 @@ static void report_energy(struct sim *s, struct report *r, bool observed)
     report_broken(s, r);
 }
 
-static void report_kernels(const struct sim *s, struct report *r)
+static int launches(const struct sim *s, struct step_launch launch[STEP_LAUNCHES])
 {
-    struct lattice *l = s->lattice->lattice;
+    const struct lattice *l = s->lattice->lattice;
     struct launch *all[] = {l->force, l->volume, l->first};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
-        if (!all[i]) continue;
-        report_begin(r, all[i]->name);
-        report_number(r, "seconds", launch_seconds(all[i]));
-        report_integer(r, "launches", all[i]->n_run);
-        report_end(r);
-    }
+    for (int i = 0; i < 3; i++)
+        launch[i] = (struct step_launch){all[i] ? all[i]->name : NULL, all[i]};
+    return 3;
 }
 
 const struct step_ops lattice_ops = {
@@ -289,12 +268,10 @@ const struct step_ops lattice_ops = {
     .read = read,
     .plan = plan,
     .setup = setup,
-    .warn = warn,
     .free = release,
-    .stale = stale,
-    .regroup = regroup,
+    .regroup = NULL, /* cells keep their neighbours and their rank */
     .advance = advance,
-    .resume = resume,
+    .begin_step = begin_step,
     .check_limit = check_limit,
     .is_at_rest = is_at_rest,
     .n_element = number,
@@ -306,5 +283,5 @@ const struct step_ops lattice_ops = {
     .count = count,
     .report_features = report_features,
     .report_energy = report_energy,
-    .report_kernels = report_kernels,
+    .launches = launches,
 };

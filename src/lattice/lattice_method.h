@@ -45,6 +45,6 @@ void lattice_state_turn(
 
 void lattice_method_frame(struct sim *s, int64_t index);
 int lattice_method_measure_columns(enum measure_kind kind, const struct series_column **column);
-void lattice_method_measure(struct sim *s, const bool *due, double (*value)[MEASURE_COLUMNS]);
+void lattice_method_measure(struct sim *s, const bool *due, double (*value)[STEP_MEASURE_COLUMNS]);
 
 #endif

@@ -168,7 +168,7 @@ void lattice_advance(struct lattice *l, bool observe)
     device_flush(l->dev);
 }
 
-void lattice_resume(struct lattice *l)
+void lattice_begin_step(struct lattice *l)
 {
     if (!l->scheme->ends_with_kick) return;
     split_step(l);

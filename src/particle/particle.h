@@ -54,9 +54,10 @@ void particle_regroup(struct sim *s);
 /* A new tree of cuts by the scene's method; elements have not moved yet. Collective. */
 void particle_cut(struct sim *s);
 /* Ghosts, lists and everything that depends on their sizes, for owned elements that are in place.
- * Collective. particle_lists: where also their room to move is. */
+ * Collective. particle_lists: the same as of `step`, without setting their room to move, which is
+ * there. */
 void particle_build(struct sim *s);
-void particle_lists(struct sim *s);
+void particle_lists(struct sim *s, int64_t step);
 /* In place of the start of a run: elements, lists and all that they remember from the frame
  * s->from. Collective. */
 void particle_resume(struct sim *s);
@@ -66,7 +67,7 @@ void particle_spread(struct sim *s, const double *x, int64_t n);
 /* Forces of pairs and walls at the present step, into the result records. */
 void particle_forces(struct sim *s);
 void particle_advance(struct sim *s, bool observe);
-void particle_go_on(struct sim *s);
+void particle_begin_step(struct sim *s);
 /* Binds the step's kernels to buffers; sets sizes. After every build. */
 void particle_bind(struct sim *s);
 
@@ -85,7 +86,7 @@ int64_t particle_number(const struct sim *s);
 int64_t particle_owned(const struct sim *s);
 void particle_frame(struct sim *s, int64_t index);
 int particle_measure_columns(enum measure_kind kind, const struct series_column **column);
-void particle_measure(struct sim *s, const bool *due, double (*value)[MEASURE_COLUMNS]);
+void particle_measure(struct sim *s, const bool *due, double (*value)[STEP_MEASURE_COLUMNS]);
 /* An element has left the run at x [m]: counts whose region holds the place go on counting it. Not
  * collective. */
 void particle_left(struct sim *s, const double x[3]);
@@ -93,6 +94,6 @@ bool particle_digest(struct sim *s, uint64_t *digest);
 void particle_count(const struct sim *s, struct step_counts *counts);
 void particle_report_features(const struct sim *s, struct report *r);
 void particle_report_energy(struct sim *s, struct report *r, bool observed);
-void particle_report_kernels(const struct sim *s, struct report *r);
+int particle_launches(const struct sim *s, struct step_launch launch[STEP_LAUNCHES]);
 
 #endif

@@ -140,7 +140,7 @@ static void check_energy(struct sim *s, const struct energy_sums *e)
             wrong, in);
 }
 
-void particle_measure(struct sim *s, const bool *due, double (*value)[MEASURE_COLUMNS])
+void particle_measure(struct sim *s, const bool *due, double (*value)[STEP_MEASURE_COLUMNS])
 {
     struct particle_run *run = s->particle;
     struct particles_host *h = NULL;

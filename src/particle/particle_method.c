@@ -18,7 +18,7 @@ const struct step_ops particle_ops = {
     .stale = stale,
     .regroup = particle_regroup,
     .advance = particle_advance,
-    .resume = particle_go_on,
+    .begin_step = particle_begin_step,
     .check_limit = particle_check_limit,
     .n_element = particle_number,
     .frame = particle_frame,
@@ -29,5 +29,5 @@ const struct step_ops particle_ops = {
     .count = particle_count,
     .report_features = particle_report_features,
     .report_energy = particle_report_energy,
-    .report_kernels = particle_report_kernels,
+    .launches = particle_launches,
 };

@@ -104,10 +104,10 @@ static void make_room(struct sim *s)
 void particle_build(struct sim *s)
 {
     make_room(s);
-    particle_lists(s);
+    particle_lists(s, s->step);
 }
 
-void particle_lists(struct sim *s)
+void particle_lists(struct sim *s, int64_t step)
 {
     struct particle_run *run = s->particle;
     struct device *dev = s->dev;
@@ -126,10 +126,10 @@ void particle_lists(struct sim *s)
     pairs_build(dev, run->pairs, run->cells, run->scan, p);
     if (run->assigned) assigned_build(dev, run->assigned, run->scan, p, run->pairs, run->ghosts);
     if (run->wall_contacts)
-        wall_contacts_build(dev, run->wall_contacts, run->scan, p, s->step,
+        wall_contacts_build(dev, run->wall_contacts, run->scan, p, step,
             (int)ceil(run->horizon / s->dt), run->box, run->box + 3);
     watch_reset(dev, &s->watch, s->comm, &p->flags);
-    run->built_at = s->step;
+    run->built_at = step;
     const struct pair_list *l = &run->pairs->now;
     int64_t n_pair = l->n_interior + l->n_mine,
             n_wall = run->wall_contacts ? run->wall_contacts->now.n : 0;

@@ -102,18 +102,16 @@ void particle_report_energy(struct sim *s, struct report *r, bool observed)
     report_numbers(r, "momentum", now.momentum, 3);
 }
 
-void particle_report_kernels(const struct sim *s, struct report *r)
+int particle_launches(const struct sim *s, struct step_launch launch[STEP_LAUNCHES])
 {
     struct particle_run *run = s->particle;
-    struct launch *all[] = {run->pair_force, run->wall_force,
-        run->wall_contacts ? run->wall_contacts->keep_launch : NULL, run->gather, run->kick_drift,
-        run->ghosts->gather, run->pairs->rows, run->pairs->carry,
-        run->wall_contacts ? run->wall_contacts->rows : NULL};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
-        if (!all[i]) continue;
-        report_begin(r, all[i] == run->ghosts->gather ? "pack_ghosts" : all[i]->name);
-        report_number(r, "seconds", launch_seconds(all[i]));
-        report_integer(r, "launches", all[i]->n_run);
-        report_end(r);
-    }
+    const struct wall_contacts *w = run->wall_contacts;
+    struct launch *all[] = {run->pair_force, run->wall_force, w ? w->keep_launch : NULL,
+        run->gather, run->kick_drift, run->ghosts->gather, run->pairs->rows, run->pairs->carry,
+        w ? w->rows : NULL};
+    int n = sizeof all / sizeof *all;
+    for (int i = 0; i < n; i++)
+        launch[i] = (struct step_launch){all[i] ? all[i]->name : NULL, all[i]};
+    launch[5].name = "pack_ghosts"; /* a kernel that moves records of any kind */
+    return n;
 }

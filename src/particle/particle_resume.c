@@ -93,10 +93,10 @@ static void place(struct sim *s, const struct frame_table *t)
     buffer_reserve(s->dev, &p->reference, 4 * particles_preal(&run->features) * n);
     particles_write(s->dev, &p->reference, f, 0, 4 * n, reference);
     particles_write(s->dev, &p->reach, f, 0, n, frame_table_get(t, "reach"));
-    s->step = h5_read_i64(s->from->reader, "built_at");
-    if (run->wall_contacts) wall_contacts_set_step(s->dev, run->wall_contacts, s->step);
-    particle_lists(s);
+    int64_t built_at = h5_read_i64(s->from->reader, "built_at");
     s->step = s->from->step;
+    if (run->wall_contacts) wall_contacts_set_step(s->dev, run->wall_contacts, built_at);
+    particle_lists(s, built_at);
     if (run->wall_contacts) wall_contacts_set_step(s->dev, run->wall_contacts, s->step);
     free(h->x);
     h->x = now;

@@ -95,7 +95,7 @@ void particle_advance(struct sim *s, bool observe)
     if (!observe) read_flags(s);
 }
 
-void particle_go_on(struct sim *s)
+void particle_begin_step(struct sim *s)
 {
     struct particle_run *run = s->particle;
     launch_run(run->kick_drift, s->dev->compute, run->particles->n_owned, 0, NULL, NULL);

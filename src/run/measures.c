@@ -53,7 +53,7 @@ int64_t measures_every(const struct sim *s, int i)
 void measures_write(struct sim *s, struct measures *m)
 {
     bool any = false, *due = fail_alloc((size_t)m->n * sizeof *due);
-    double(*value)[MEASURE_COLUMNS] = fail_alloc((size_t)m->n * sizeof *value);
+    double(*value)[STEP_MEASURE_COLUMNS] = fail_alloc((size_t)m->n * sizeof *value);
     for (int i = 0; i < m->n; i++)
         any |= due[i] = s->rest.reached || s->step % measures_every(s, i) == 0;
     if (any) s->ops->measure(s, due, value);

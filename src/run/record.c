@@ -6,6 +6,7 @@
 
 #include "results/digest.h"
 #include "comm/fail.h"
+#include "device/launch.h"
 #include "laws/lattice_schemes.h"
 #include "results/report.h"
 #include "resume.h"
@@ -55,7 +56,7 @@ static void add_scale(struct report *r, struct sim *s)
     report_number(r, "loop", loop);
     report_number(r, "output", s->timers.total[TIMER_OUTPUT]);
     report_end(r);
-    report_number(r, "element_steps_per_s", loop > 0 ? s->element_steps / loop : 0);
+    report_number(r, "element_steps_per_s", loop > 0 ? s->account.element_steps / loop : 0);
     report_timers(r, "timers", s->comm, &s->timers);
     report_integer(r, "rebuilds", s->n_rebuild);
     const struct partition_quality *q = &s->balance->quality;
@@ -77,17 +78,17 @@ static void add_scale(struct report *r, struct sim *s)
         r, "device_bytes_per_element", (double)sum[2] / (double)(s->n_first > 0 ? s->n_first : 1));
 }
 
-/* Copies and allocations in plain steps (sim.h), sums over ranks: what shows that the state stays
- * on the device. */
+/* Copies and allocations in plain steps (account.h), sums over ranks: what shows that the state
+ * stays on the device. */
 static void add_plain_steps(struct report *r, const struct sim *s)
 {
-    const struct device_counters *c = &s->plain;
+    const struct device_counters *c = &s->account.plain;
     static const char *const name[] = {"allocations", "to_device", "to_device_bytes", "from_device",
         "from_device_bytes", "launches"};
     int64_t sum[6] = {c->n_alloc, c->n_h2d, c->h2d_bytes, c->n_d2h, c->d2h_bytes, c->n_launch};
     comm_sum_i64(s->comm, sum, 6);
     report_begin(r, "plain_steps");
-    report_integer(r, "steps", s->n_plain);
+    report_integer(r, "steps", s->account.n_plain);
     for (int i = 0; i < 6; i++) report_integer(r, name[i], sum[i]);
     report_end(r);
 }
@@ -110,6 +111,22 @@ static void add_rest(struct report *r, const struct sim *s)
     report_flag(r, "reached", s->rest.reached);
     report_number(r, "left", s->rest.left);
     report_number(r, "damping", s->rest.damping);
+    report_end(r);
+}
+
+/* Device time and number of launches of the kernels of a step, on rank 0. */
+static void add_kernels(struct report *r, const struct sim *s)
+{
+    struct step_launch all[STEP_LAUNCHES];
+    int n = s->ops->launches(s, all);
+    report_begin(r, "kernels");
+    for (int i = 0; i < n; i++) {
+        if (!all[i].launch) continue;
+        report_begin(r, all[i].name);
+        report_number(r, "seconds", launch_seconds(all[i].launch));
+        report_integer(r, "launches", all[i].launch->n_run);
+        report_end(r);
+    }
     report_end(r);
 }
 
@@ -141,11 +158,7 @@ bool record_write(struct sim *s, int exit_code, bool observed)
     if (s->from) add_resumed(r, s);
     add_scale(r, s);
     add_plain_steps(r, s);
-    if (s->options->profile) {
-        report_begin(r, "kernels");
-        s->ops->report_kernels(s, r);
-        report_end(r);
-    }
+    if (s->options->profile) { add_kernels(r, s); }
     if (s->rest.next > 0) add_rest(r, s);
     s->ops->report_energy(s, r, observed);
     report_integer(r, "exit", exit_code);
@@ -156,7 +169,7 @@ bool record_write(struct sim *s, int exit_code, bool observed)
         log_print(s->log,
             "%lld steps of %lld elements in %.2f s: %.3g million element steps per second",
             (long long)(s->step - s->begun_at), (long long)s->n_first, loop,
-            loop > 0 ? s->element_steps / loop * 1e-6 : 0);
+            loop > 0 ? s->account.element_steps / loop * 1e-6 : 0);
         balance_print(s->balance, s->log);
         log_print(s->log, "digest %s", whole ? digest : "none: the state holds NaN");
     }

@@ -61,25 +61,25 @@ static void begin(struct sim *s)
         s->ops->check_limit(s);
         return;
     }
-    resume_close(s->options->from);
+    resume_close(s->from);
     s->begun_at = s->step;
-    s->observed = true;
     log_print(s->log, "goes on from step %lld, t = %.9g s, of '%s'", (long long)s->step,
         (double)s->step * s->dt, s->from->path);
     if (s->step == s->n_step || s->rest.reached) log_print(s->log, "nothing is left to do");
 }
 
 struct sim *sim_create(struct scene *scene, struct comm *comm, struct log *log,
-    const struct step_ops *ops, const struct sim_options *options)
+    const struct step_ops *ops, struct resume *from, const struct sim_options *options)
 {
     struct sim *s = fail_alloc(sizeof *s);
     s->options = options;
-    s->from = options->from;
+    s->from = from;
     s->scene = scene;
     s->comm = comm;
     s->log = log;
     s->ops = ops;
     s->started = timer_now();
+    s->observed = true; /* the state that the set-up leaves */
     s->rest.left = (double)NAN;
     s->balance = balance_create(comm, &scene->partition);
     timer_begin(&s->timers, TIMER_SETUP);
@@ -101,7 +101,7 @@ struct sim *sim_create(struct scene *scene, struct comm *comm, struct log *log,
     log_print(log,
         "time step %.4g s (%.2g of the limit %.4g s of the present contacts), %lld steps", s->dt,
         s->dt / s->dt_limit, s->dt_limit, (long long)s->n_step);
-    s->ops->warn(s);
+    if (s->ops->warn) s->ops->warn(s);
     print_memory(s);
     if (options->trace)
         s->trace = trace_create(
@@ -118,9 +118,9 @@ static void progress(struct sim *s, bool end)
     else log_progress(s->log, &p);
 }
 
-/* Lists, lost elements and requests, as agreed beside the step before. Returns whether this step is
- * to be the last. */
-static bool look_around(struct sim *s)
+/* Does what all ranks have agreed on during the step before: ends a run that has lost elements,
+ * rebuilds lists that are used up. Returns whether somebody asks to stop with this step. */
+static bool act_on_votes(struct sim *s)
 {
     trace_lap(s->dev->trace, NULL);
     timer_begin(&s->timers, TIMER_EXCHANGE);
@@ -131,7 +131,7 @@ static bool look_around(struct sim *s)
     trace_lap(s->dev->trace, "vote");
     if (agreed & WATCH_LOST)
         output_stop_numerics(s, "positions or velocities are not numbers any more");
-    if (agreed & WATCH_STALE || s->ops->stale(s)) {
+    if (s->ops->regroup && (agreed & WATCH_STALE || s->ops->stale(s))) {
         timer_begin(&s->timers, TIMER_REGROUP);
         s->ops->regroup(s);
         signals_keep(); /* kernels that ran for the first time may have been compiled */
@@ -141,21 +141,7 @@ static bool look_around(struct sim *s)
     return (agreed & WATCH_STOP) != 0;
 }
 
-/* Adds what a plain step has moved and allocated to the account that shows that it moves ghosts and
- * flags alone, and allocates nothing. */
-static void count_plain(struct sim *s, const struct device_counters *before)
-{
-    const struct device_counters *now = &s->dev->counters;
-    s->n_plain++;
-    s->plain.n_alloc += now->n_alloc - before->n_alloc;
-    s->plain.n_h2d += now->n_h2d - before->n_h2d;
-    s->plain.h2d_bytes += now->h2d_bytes - before->h2d_bytes;
-    s->plain.n_d2h += now->n_d2h - before->n_d2h;
-    s->plain.d2h_bytes += now->d2h_bytes - before->d2h_bytes;
-    s->plain.n_launch += now->n_launch - before->n_launch;
-}
-
-/* Looking at clocks and writing the trace are output. */
+/* The clocks that a trace reads and the file that it writes count as output time. */
 static void trace(struct sim *s, int64_t step)
 {
     if (!s->trace) return;
@@ -184,48 +170,63 @@ static int close_run(struct sim *s, bool stopped)
     return code;
 }
 
-int sim_run(struct sim *s)
+static void begin_loop(struct sim *s)
 {
-    bool stop = false;
+    double *total = s->timers.total;
+    struct step_counts counts;
     signals_keep();
     signals_pass();
-    double *total = s->timers.total;
-    /* the set-up's belong to TIMER_SETUP */
-    total[TIMER_EXCHANGE] = total[TIMER_WAIT] = total[TIMER_REGROUP] = 0;
-    struct step_counts counts;
+    total[TIMER_EXCHANGE] = total[TIMER_WAIT] = total[TIMER_REGROUP] = 0; /* those of the set-up */
     s->ops->count(s, &counts);
     s->sent_before = counts.sent;
     timer_begin(&s->timers, TIMER_LOOP);
     if (!s->from) output_write(s, s->n_step == 0);
-    while (s->step < s->n_step && !stop && !s->rest.reached) {
-        trace(s, s->step + 1);
-        const struct device_counters before = s->dev->counters;
-        int64_t n_rebuild = s->n_rebuild;
-        bool plain = s->step > 0 && !s->observed;
-        if (!plain) s->ops->resume(s);
-        s->step++;
-        stop = look_around(s);
-        bool limit_due = s->step - s->limit_at >= LIMIT_EVERY;
-        bool rest_due = s->step == s->rest.next;
-        s->observed =
-            output_due(s, s->step) || s->step == s->n_step || stop || limit_due || rest_due;
-        s->ops->advance(s, s->observed);
-        s->element_steps += (double)s->ops->n_element(s);
-        if (plain && !s->observed && s->n_rebuild == n_rebuild) count_plain(s, &before);
-        if (s->observed) {
-            device_finish(s->dev); /* what the steps took is theirs, not the output's */
-            if (limit_due) s->ops->check_limit(s);
-            if (rest_due) s->rest.reached = s->ops->is_at_rest(s);
-            output_write(s, stop || s->rest.reached || s->step == s->n_step);
-        }
-        progress(s, false);
-    }
+}
+
+static void end_loop(struct sim *s)
+{
+    double *total = s->timers.total;
     trace(s, -1);
     device_finish(s->dev);
     timer_end(&s->timers, TIMER_LOOP);
     total[TIMER_LOOP] -= total[TIMER_OUTPUT];
     total[TIMER_COMPUTE] = total[TIMER_LOOP] - total[TIMER_EXCHANGE] - total[TIMER_REGROUP];
     progress(s, true);
+}
+
+static bool is_limit_due(const struct sim *s)
+{
+    return s->step - s->limit_at >= LIMIT_EVERY;
+}
+
+/* Everything that reads the state of a full step. */
+static void observe(struct sim *s, bool stop)
+{
+    device_finish(s->dev); /* the time of the steps is theirs, not the output's */
+    if (is_limit_due(s)) s->ops->check_limit(s);
+    if (s->step == s->rest.next) s->rest.reached = s->ops->is_at_rest(s);
+    output_write(s, stop || s->rest.reached || s->step == s->n_step);
+}
+
+/* The main loop. The states that a step begins and ends with are drawn in step.h. */
+int sim_run(struct sim *s)
+{
+    bool stop = false;
+    begin_loop(s);
+    while (s->step < s->n_step && !stop && !s->rest.reached) {
+        trace(s, s->step + 1);
+        account_begin(&s->account, s);
+        if (s->observed) s->ops->begin_step(s);
+        s->step++;
+        stop = act_on_votes(s); /* rebuilds lists too */
+        s->observed = stop || s->step == s->n_step || output_due(s, s->step) || is_limit_due(s) ||
+                      s->step == s->rest.next;
+        s->ops->advance(s, s->observed);
+        account_end(&s->account, s);
+        if (s->observed) observe(s, stop);
+        progress(s, false);
+    }
+    end_loop(s);
     return close_run(s, stop && !s->rest.reached && s->step < s->n_step);
 }
 

@@ -4,6 +4,7 @@
 #ifndef DEMOCLES_SIM_H
 #define DEMOCLES_SIM_H
 
+#include "account.h"
 #include "balance.h"
 #include "results/log.h"
 #include "step.h"
@@ -22,7 +23,6 @@ struct sim_options {
     enum precision precision;        /* PRECISION_DEFAULT: the scene's */
     int64_t n_step;                  /* last step, -1: from the scene's end */
     double max_time;                 /* [s] of wall time; infinity: none */
-    struct resume *from;             /* frame in `dir` to go on from; NULL: from the start */
 };
 
 struct sim {
@@ -33,7 +33,7 @@ struct sim {
     struct log *log;
     int64_t n_first; /* elements at the start, of all ranks */
     const struct step_ops *ops;
-    const struct resume *from; /* NULL: from the start */
+    struct resume *from; /* frame of the folder of results to go on from; NULL: from the start */
     /* checksum of elements and walls, or cells and loads, as the scene makes them */
     int64_t inputs;
 
@@ -58,13 +58,9 @@ struct sim {
     struct trace *trace; /* NULL: none */
     struct outputs *output;
 
-    /* account of the run */
     int64_t n_rebuild, n_removed;
     struct balance *balance;
-    double element_steps; /* elements times steps so far */
-    /* what the plain steps added: those without regroup, observation or the step after one */
-    struct device_counters plain;
-    int64_t n_plain;
+    struct account account;
     struct halo_traffic sent_before; /* by this rank before the first step */
     double started;                  /* timer_now at the start */
 };
@@ -72,7 +68,7 @@ struct sim {
 /* Reads nothing: the scene is there. ops: of the scene's method. Opens the device, builds kernels,
  * makes elements, lists and output. Collective; errors stop all ranks. */
 struct sim *sim_create(struct scene *scene, struct comm *comm, struct log *log,
-    const struct step_ops *ops, const struct sim_options *options);
+    const struct step_ops *ops, struct resume *from, const struct sim_options *options);
 /* A measure of energy on a device without double precision: message, exit code 4. Collective. */
 void sim_require_double(const struct sim *s);
 /* Runs to the end or to a stop; returns the exit code. Collective. */

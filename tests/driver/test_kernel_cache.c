@@ -17,7 +17,8 @@ static double seconds(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* Another process, which says that it begins and then how long it has waited for the lock [ms]; exit code 0 if it has got it. */
+/* Another process, which says that it begins and then how long it has waited for the lock [ms];
+ * exit code 0 if it has got it. */
 static _Noreturn void wait_in_child(int out, int inherited, uint64_t key)
 {
     kernel_cache_unlock(inherited); /* the parent has it still */
@@ -29,7 +30,8 @@ static _Noreturn void wait_in_child(int out, int inherited, uint64_t key)
     _exit(lock < 0 || !told);
 }
 
-/* How long another process waits for the lock of `wanted` while this one holds that of `held`, for HELD_MS or until the other one has ended. */
+/* How long another process waits for the lock of `wanted` while this one holds that of `held`, for
+ * HELD_MS or until the other one has ended. */
 static int waited_ms(uint64_t held, uint64_t wanted, bool until_end)
 {
     const struct timespec while_held = {0, HELD_MS * 1000000L};

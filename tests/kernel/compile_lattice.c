@@ -30,7 +30,7 @@ int main(int argc, char **argv)
     }
     struct lattice_cells *cells = bodies_create(1, size, 0.01, 1, bodies_block);
     struct lattice *l = lattice_create(dev, comm, cells, &o);
-    lattice_resume(l);
+    lattice_begin_step(l);
     lattice_advance(l, false);
     lattice_free(l);
     bodies_free(cells);

@@ -29,7 +29,7 @@ struct host {
 
 struct host *host_create(const struct lattice_cells *cells, const struct lattice_options *options);
 void host_free(struct host *h);
-/* As lattice_advance and lattice_resume, but for an observed step of a scheme that ends with a
+/* As lattice_advance and lattice_begin_step, but for an observed step of a scheme that ends with a
  * kick: `seen` [n] gets the state, what goes on stays, but for the ledger. */
 void host_step(struct host *h);
 void host_observe(struct host *h, struct link_cell *seen);

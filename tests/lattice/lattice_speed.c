@@ -60,7 +60,7 @@ int main(int argc, char **argv)
     for (int k = 0; k < ROUNDS; k++) {
         device_finish(dev);
         double t = busy();
-        for (int i = 0; i < steps; i++) lattice_resume(l), lattice_advance(l, false);
+        for (int i = 0; i < steps; i++) lattice_begin_step(l), lattice_advance(l, false);
         device_finish(dev);
         t = busy() - t;
         double rate = (l->scheme->ends_with_kick ? 2.0 : 1.0) * steps * (double)cells->n / t;

@@ -88,14 +88,14 @@ static struct sums run(struct lattice_options o, double eta, double alpha_1, dou
     struct lattice_account *account = lattice_energy_create(l, cells);
     struct lattice_energy start, now;
     lattice_energy_now(account, &start);
-    lattice_resume(l);
+    lattice_begin_step(l);
     int n = (int)lround(0.04 / dt), every = (int)lround(0.004 / dt);
     for (int step = 1; step <= n; step++) {
         lattice_advance(l, step % every == 0);
         if (step % every != 0) continue;
         lattice_energy_now(account, &now);
         s.worst = fmax(s.worst, fabs(lattice_energy_balance(&start, &now)));
-        if (step < n) lattice_resume(l);
+        if (step < n) lattice_begin_step(l);
     }
     s.work = now.work;
     s.links = now.links;
@@ -146,7 +146,7 @@ static struct lattice_energy pass(const struct link_material *m, double alpha, i
     }
     struct lattice *l = lattice_create(dev, comm, cells, &o);
     struct lattice_account *account = lattice_energy_create(l, cells);
-    lattice_resume(l);
+    lattice_begin_step(l);
     for (int step = 1; step <= 1000; step++) lattice_advance(l, step == 1000);
     lattice_energy_now(account, &e);
     lattice_read(l, &(struct lattice_motion){.u = u});

@@ -48,7 +48,7 @@ static int mode_of(
     x.q[0][0] = x.q[1][0] = sqrt(1 - square);
     struct lattice *l = lattice_create(dev, comm, cells, &o);
     lattice_write(l, &x);
-    lattice_resume(l);
+    lattice_begin_step(l);
     lattice_advance(l, true);
     lattice_break_count(l->breakage, count);
     for (int k = 0; k < LATTICE_BREAK_MODES; k++) {
@@ -130,7 +130,7 @@ static uint64_t run(const struct lattice_cells *cells, const struct lattice_opti
     struct lattice *l = lattice_create(dev, comm, cells, o);
     uint64_t digest;
     lattice_write(l, x);
-    lattice_resume(l);
+    lattice_begin_step(l);
     for (int step = 1; step <= n; step++) lattice_advance(l, step == n);
     lattice_read(l, x);
     assert_int_equal(lattice_digest(l, &digest), 0);
@@ -224,7 +224,7 @@ static double unbalanced(enum lattice_scheme scheme, double dt, double *released
     struct lattice_account *account = lattice_energy_create(l, cells);
     lattice_energy_now(account, &start);
     int n = (int)lround(2e-3 / dt);
-    lattice_resume(l);
+    lattice_begin_step(l);
     for (int step = 1; step <= n; step++) lattice_advance(l, step == n);
     lattice_energy_now(account, &now);
     *released = now.released;

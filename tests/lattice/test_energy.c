@@ -107,13 +107,13 @@ static double change(enum lattice_scheme scheme, double dt, double *drift)
     struct lattice_energy start, now;
     lattice_energy_now(account, &start);
     *drift = 0;
-    lattice_resume(l);
+    lattice_begin_step(l);
     for (int step = 1; step <= (int)lround(4 / dt); step++) {
         bool observe = step % (int)lround(0.2 / dt) == 0;
         lattice_advance(l, observe);
         if (!observe) continue;
         lattice_energy_now(account, &now);
-        lattice_resume(l);
+        lattice_begin_step(l);
         double total = now.kinetic + now.rotational + now.elastic,
                first = start.kinetic + start.rotational + start.elastic;
         worst = fmax(worst, fabs(total / first - 1));
@@ -191,14 +191,14 @@ static double unbalanced(double dt)
     struct lattice_account *account = lattice_energy_create(l, cells);
     lattice_energy_now(account, &now);
     double start = now.elastic - work_on_bar(l, &m, h), first = work_on_bar(l, &m, h);
-    lattice_resume(l);
+    lattice_begin_step(l);
     for (int step = 1; step <= (int)lround(8e-3 / dt); step++) {
         bool observe = step % (int)lround(4e-4 / dt) == 0;
         lattice_advance(l, observe);
         if (!observe) continue;
         lattice_energy_now(account, &now);
         double work = work_on_bar(l, &m, h);
-        lattice_resume(l);
+        lattice_begin_step(l);
         most = fmax(most, work - first);
         worst = fmax(worst, fabs(now.kinetic + now.rotational + now.elastic - work - start));
     }

@@ -17,7 +17,7 @@ static void run(const struct lattice_cells *cells, const struct lattice_options 
 {
     struct lattice *l = lattice_create(dev, comm, cells, o);
     lattice_write(l, m);
-    lattice_resume(l);
+    lattice_begin_step(l);
     for (int step = 1; step <= n; step++) lattice_advance(l, step == n);
     lattice_read(l, m);
     lattice_free(l);

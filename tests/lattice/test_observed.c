@@ -41,14 +41,14 @@ static struct seen look(const struct comm *who, const struct lattice_cells *cell
     size_t n = (size_t)l->layout->n_owned;
     double(*own)[9] = fail_alloc(n * sizeof *own), *mises = fail_alloc(n * sizeof *mises);
     struct seen s = {.stress = fail_alloc((size_t)cells->n * sizeof *s.stress)};
-    lattice_resume(l);
+    lattice_begin_step(l);
     for (int step = 1; step <= 5; step++) {
         bool now = step == 5 || (step == 3 && peek);
         lattice_advance(l, now);
         if (!now) continue;
         lattice_stress_run(stress, own, mises);
         lattice_energy_now(account, &s.energy[step == 5]);
-        if (step < 5) lattice_resume(l);
+        if (step < 5) lattice_begin_step(l);
     }
     CHECK(lattice_digest(l, &s.digest) == 0);
     for (size_t k = 0; k < n; k++) {

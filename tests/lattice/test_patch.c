@@ -127,7 +127,7 @@ static void patch(bodies_solid *solid, const int size[3], double nu, bool turn, 
     struct lattice *l = lattice_create(dev, comm, cells, &o);
     lattice_write(l, &s);
     for (int form = 0; form < 2; form++) start[form] = worst_of(l, &p, form, largest);
-    lattice_resume(l);
+    lattice_begin_step(l);
     for (int step = 1; step <= 4; step++) lattice_advance(l, step == 4);
     for (int form = 0; form < 2; form++) end[form] = worst_of(l, &p, form, largest);
     printf(

@@ -28,11 +28,11 @@ static uint64_t digest(const struct comm *who, const struct lattice_cells *cells
     struct lattice *l = lattice_create(dev, who, cells, o);
     uint64_t value = 0;
     int64_t n_nan;
-    lattice_resume(l);
+    lattice_begin_step(l);
     for (int step = 1; step <= n_step; step++) {
         bool look = step == n_step || (observe && step % 3 == 0);
         lattice_advance(l, look);
-        if (look && step < n_step) lattice_resume(l);
+        if (look && step < n_step) lattice_begin_step(l);
     }
     n_nan = lattice_digest(l, &value);
     CHECK(n_nan == 0);

@@ -202,7 +202,7 @@ static void run(enum lattice_scheme scheme, bool one_lane, int axis, int length)
     bool observed = true;
     compare(l, h->now);
     for (int step = 1; step <= 7; step++) {
-        if (observed) lattice_resume(l);
+        if (observed) lattice_begin_step(l);
         observed = step == 3 || step == 7;
         lattice_advance(l, observed);
         host_step(h);

@@ -195,7 +195,7 @@ static void check(const char *precision, double tolerance)
     assert_non_null(scene);
     struct log *log = log_create(comm, true);
     struct sim_options options = {.dir = dir, .quiet = true, .n_step = -1, .max_time = HUGE_VAL};
-    struct sim *s = sim_create(scene, comm, log, &particle_ops, &options);
+    struct sim *s = sim_create(scene, comm, log, &particle_ops, NULL, &options);
     static const double dt[] = {0, 1e-4, 1e-2}, share[] = {1, 0.6, 0.9};
     for (int k = 0; k < 3; k++)
         compare(s, limit_run(s, dt[k], share[k]), dt[k], share[k], tolerance, 300);
