@@ -52,7 +52,7 @@ class Colours:
         if self.is_vector:
             low = 0.0
         high = float(numpy.percentile(values, 99.5))
-        self.is_cut = high < float(values.max())
+        self.is_cut = 1.05 * high < float(values.max())  # what lies below that cannot be seen
         if not high > low:
             high = low + max(abs(low), 1.0) * 1e-3 if not self.is_vector else 1.0
         return low, high
@@ -138,7 +138,7 @@ class Layout:
         label = 0 if plain else 2.2 * self.text / 72 * 100  # pixels above each panel, for its time
         area_w, area_h = width, height * (1 - self.top - self.bottom)
         scales = []
-        for columns in range(1, n + 1):
+        for columns in (c for c in range(1, n + 1) if n % c == 0):  # full rows
             rows = -(-n // columns)
             panel = area_w / columns, area_h / rows - label
             scales.append((min(panel[0] * 0.96 / spans[0], panel[1] * 0.98 / spans[1]), -rows, columns, panel))
