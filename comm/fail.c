@@ -17,12 +17,13 @@ static int world_rank(void)
     return rank;
 }
 
-static void print_error(int rank, const char *format, va_list args)
+/* One line in one write, so that mpirun cannot put the output of another rank between its pieces. */
+static void print_line(const char *kind, int rank, const char *format, va_list args)
 {
-    char text[4096];
+    char text[4096], of_rank[32] = "";
     vsnprintf(text, sizeof text, format, args);
-    if (rank > 0) fprintf(stderr, "democles: error: rank %d: %s\n", rank, text);
-    else fprintf(stderr, "democles: error: %s\n", text);
+    if (rank > 0) snprintf(of_rank, sizeof of_rank, "rank %d: ", rank);
+    fprintf(stderr, "democles: %s: %s%s\n", kind, of_rank, text);
     fflush(stderr);
 }
 
@@ -31,7 +32,7 @@ _Noreturn void fail_stop(int exit_code, const char *format, ...)
     int rank = world_rank();
     va_list args;
     va_start(args, format);
-    print_error(rank, format, args);
+    print_line("error", rank, format, args);
     va_end(args);
     fflush(stdout);
     if (rank >= 0) MPI_Abort(MPI_COMM_WORLD, exit_code);
@@ -52,7 +53,7 @@ _Noreturn void fail_stop_together(int exit_code, const char *format, ...)
     if (rank <= 0) {
         va_list args;
         va_start(args, format);
-        print_error(0, format, args);
+        print_line("error", 0, format, args);
         va_end(args);
     }
     fail_leave(exit_code);
@@ -63,9 +64,7 @@ void fail_warn(const char *format, ...)
     if (world_rank() > 0) return;
     va_list args;
     va_start(args, format);
-    fputs("democles: warning: ", stderr);
-    vfprintf(stderr, format, args);
-    fputc('\n', stderr);
+    print_line("warning", 0, format, args);
     va_end(args);
 }
 

@@ -1,6 +1,6 @@
-/* Ends a run that cannot go on, and memory that is never NULL. Errors go to stderr once; every rank
- * leaves together. Ranks that run into the same trouble at the same time each call fail_stop: only
- * the first message of a node counts, MPI_Abort ends the others. */
+/* Fatal errors, and allocation that never returns NULL. An error is printed to stderr once, and all
+ * ranks leave together. Where several ranks meet the same trouble at the same time, each of them
+ * calls fail_stop, and MPI_Abort by the first ends the others. */
 #ifndef DEMOCLES_FAIL_H
 #define DEMOCLES_FAIL_H
 

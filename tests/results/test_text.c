@@ -1,5 +1,7 @@
 /* Numbers as text: doubles that read back to the same bits, JSON, durations; and the checksum of
  * datasets. */
+#define _GNU_SOURCE /* pipe2, O_DIRECT */
+#include <fcntl.h>
 #include <float.h>
 #include <math.h>
 #include <setjmp.h>
@@ -7,9 +9,11 @@
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 
+#include "comm/fail.h"
 #include "results/digest.h"
 #include "results/h5_check.h"
 #include "results/log.h"
@@ -123,6 +127,23 @@ static void test_checksum_of_parts(void **state)
     assert_true(h5_check_sum(COLUMN_F64, a, 10, 0) != whole);
 }
 
+/* A pipe in packet mode hands over one write at a time. */
+static void test_a_warning_is_one_write(void **state)
+{
+    (void)state;
+    int end[2], screen = dup(STDERR_FILENO);
+    assert_int_equal(pipe2(end, O_DIRECT), 0);
+    dup2(end[1], STDERR_FILENO);
+    fail_warn("%s of %d", "part", 7);
+    dup2(screen, STDERR_FILENO);
+    close(end[1]);
+    char text[100] = "";
+    assert_true(read(end[0], text, sizeof text - 1) > 0);
+    assert_string_equal(text, "democles: warning: part of 7\n");
+    close(end[0]);
+    close(screen);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -131,6 +152,7 @@ int main(void)
         cmocka_unit_test(test_json),
         cmocka_unit_test(test_durations),
         cmocka_unit_test(test_checksum_of_parts),
+        cmocka_unit_test(test_a_warning_is_one_write),
     };
     return cmocka_run_group_tests_name("text", tests, NULL, NULL);
 }
