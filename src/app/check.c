@@ -41,20 +41,22 @@ static void print_walls(const struct scene *scene, const struct walls *walls)
     static const char *const kind[] = {[SURFACE_PLANE] = "plane",
         [SURFACE_RECTANGLE] = "rectangle",
         [SURFACE_BOX] = "box",
-        [SURFACE_CYLINDER] = "cylinder",
-        [SURFACE_STL] = "triangles"};
-    printf("\nwalls: %d, of %d primitives\n", walls->n_wall, walls->n_primitive);
+        [SURFACE_CYLINDER] = "cylinder"};
+    printf("\nwalls: %d, of %d facet%s\n", walls->n_wall, walls->n_primitive,
+        walls->n_primitive == 1 ? "" : "s");
     for (int w = 0; w < walls->n_wall; w++) {
         const struct wall *wall = &scene->wall[w];
         printf("    %s: %s, ", wall->name, scene->material[wall->material].name);
-        if (wall->kind == SURFACE_STL) printf("%d ", walls->first[w + 1] - walls->first[w]);
-        printf("%s%s", kind[wall->kind], walls->moves[w] ? ", moves" : "");
+        int n = walls->first[w + 1] - walls->first[w];
+        if (wall->kind == SURFACE_STL) printf("%d triangle%s", n, n == 1 ? "" : "s");
+        else printf("%s", kind[wall->kind]);
+        printf("%s", walls->moves[w] ? ", moves" : "");
         if (wall->appear_at > 0) printf(", from %g s", wall->appear_at);
         if (isfinite(wall->remove_at)) printf(", until %g s", wall->remove_at);
         printf("\n");
     }
     if (walls->n_dropped > 0)
-        printf("    %d triangles without area were left out\n", walls->n_dropped);
+        printf("    triangles of zero area, left out: %d\n", walls->n_dropped);
 }
 
 /* The same limit, step and number of steps as sim_create has them. */

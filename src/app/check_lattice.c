@@ -55,8 +55,8 @@ static void print_boundaries(const struct scene *scene, const struct lattice_cel
         n_held += (cells->bits[i] & CELL_FIXED) != 0;
         n_loaded += cells->row[i] > 0;
     }
-    printf("\nboundaries: %d; %lld cells are held or led, %lld are loaded or led, in %d different "
-           "ways\n",
+    printf("\nboundaries: %d; cells that are constrained or prescribed: %lld; cells that are "
+           "loaded or prescribed: %lld, with distinct sets of loads: %d\n",
         scene->n_boundary, (long long)n_held, (long long)n_loaded, cells->loads->n_row - 1);
 }
 

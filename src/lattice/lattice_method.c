@@ -100,6 +100,7 @@ static void measure(struct sim *s)
 static void setup(struct sim *s)
 {
     struct lattice_run *r = s->lattice;
+    log_element(s->log, "cell");
     log_print(s->log, "%lld cells in %d %s", (long long)s->n_first, s->scene->n_body,
         s->scene->n_body == 1 ? "body" : "bodies");
     if (r->input->options.energy) sim_require_double(s);

@@ -11,7 +11,7 @@
 
 int particle_measure_columns(enum measure_kind kind, const struct series_column **column)
 {
-    static const struct series_column count[] = {{"count", "1"}, {"present", "1"}, {"left", "1"}};
+    static const struct series_column count[] = {{"count", "1"}, {"present", "1"}, {"removed", "1"}};
     static const struct series_column energy[] = {{"kinetic", "J"}, {"rotational", "J"},
         {"gravity", "J"}, {"elastic", "J"}, {"dashpot_normal", "J"}, {"dashpot_tangential", "J"},
         {"sliding", "J"}, {"rolling", "J"}, {"bonds", "J"}, {"wall_work", "J"}, {"removed", "J"},

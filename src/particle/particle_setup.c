@@ -168,7 +168,8 @@ void particle_setup(struct sim *s)
     struct particle_run *run = s->particle;
     s->n_first = run->first->n;
     run->left = fail_alloc((size_t)s->scene->n_measure * sizeof *run->left);
-    log_print(s->log, "%lld element%s, %d wall%s", (long long)s->n_first,
+    log_element(s->log, "particle");
+    log_print(s->log, "%lld particle%s, %d wall%s", (long long)s->n_first,
         s->n_first == 1 ? "" : "s", s->scene->n_wall, s->scene->n_wall == 1 ? "" : "s");
     if (run->features.energy) sim_require_double(s);
     create_kernels(s);

@@ -24,8 +24,9 @@ struct log {
     bool is_begun;      /* progress */
     /* [s] clock at the first call, and when a line was last shown */
     double begun, last;
-    int64_t step_begun, step_last, tenth; /* tenth: of the run, already announced */
+    int64_t step_last, tenth;             /* tenth: of the run, already announced */
     double rate;                          /* [steps/s], smoothed; 0: not known yet */
+    const char *element;                  /* what is counted: "particle" */
 };
 
 /* Open MPI gives each rank a pseudo-terminal, wherever its own output goes: under mpirun that of
@@ -48,7 +49,13 @@ struct log *log_create(const struct comm *comm, bool quiet)
     log->speaks = comm->rank == 0;
     log->quiet = quiet;
     log->is_terminal = log->speaks && is_terminal();
+    log->element = "element";
     return log;
+}
+
+void log_element(struct log *log, const char *name)
+{
+    log->element = name;
 }
 
 static void to_file(struct log *log, const char *text)
@@ -150,8 +157,15 @@ static void begin(struct log *log, const struct log_progress *p, double now)
 {
     log->is_begun = true;
     log->begun = log->last = now;
-    log->step_begun = log->step_last = p->step;
+    log->step_last = p->step;
     log->tenth = p->n_step > 0 ? 10 * p->step / p->n_step : 0;
+}
+
+char *log_rate(const struct log *log, double per_second)
+{
+    bool is_fast = per_second >= 1e6;
+    return fail_format("%.3g %s%s updates/s", is_fast ? 1e-6 * per_second : per_second,
+        is_fast ? "million " : "", log->element);
 }
 
 /* Rate since the last line, smoothed, so that the time left does not jump at every rebuild of the
@@ -165,22 +179,23 @@ static void take_rate(struct log *log, const struct log_progress *p, double now)
     log->rate = log->rate > 0 ? (1 - weight) * log->rate + weight * rate : rate;
 }
 
-static char *progress_text(
-    const struct log *log, const struct log_progress *p, double now, bool is_end)
+static char *place_text(const struct log_progress *p)
 {
-    char duration[LOG_DURATION_SIZE];
-    double rate = is_end && now > log->begun
-                      ? (double)(p->step - log->step_begun) / (now - log->begun)
-                      : log->rate;
     double share = p->n_step > 0 ? 100.0 * (double)p->step / (double)p->n_step : 100.0;
-    log_duration(is_end ? now - log->begun : (double)(p->n_step - p->step) / rate, duration);
-    double element_steps = rate * (double)p->n_element;
-    bool is_fast = element_steps >= 1e6;
-    return fail_format(
-        "step %lld of %lld (%.0f %%)  t = %.5g of %.5g s  %.3g %selement-steps/s  %s %s",
-        (long long)p->step, (long long)p->n_step, floor(share), p->time, p->end,
-        is_fast ? 1e-6 * element_steps : element_steps, is_fast ? "million " : "", duration,
-        is_end ? "in all" : "left");
+    return fail_format("step %lld of %lld (%.0f %%)  t = %.5g of %.5g s", (long long)p->step,
+        (long long)p->n_step, floor(share), p->time, p->end);
+}
+
+/* The last line has no rate: that of the whole run is log_rate's, which leaves output out. */
+static char *progress_text(const struct log *log, const struct log_progress *p)
+{
+    char duration[LOG_DURATION_SIZE], *place = place_text(p),
+        *rate = log_rate(log, log->rate * (double)p->n_element);
+    log_duration((double)(p->n_step - p->step) / log->rate, duration);
+    char *text = fail_format("%s  %s  %s left", place, rate, duration);
+    free(place);
+    free(rate);
+    return text;
 }
 
 void log_progress(struct log *log, const struct log_progress *p)
@@ -194,7 +209,7 @@ void log_progress(struct log *log, const struct log_progress *p)
     bool show_line = is_mark || (!log->is_terminal && now - log->last >= every_file);
     if (!show_terminal && !show_line) return;
     take_rate(log, p, now);
-    char *text = progress_text(log, p, now, false);
+    char *text = progress_text(log, p);
     if (log->is_terminal && !log->quiet) {
         int width = printf("\r%s", text) - 1;
         /* the rest of a longer line before */
@@ -218,9 +233,7 @@ void log_progress(struct log *log, const struct log_progress *p)
 void log_progress_end(struct log *log, const struct log_progress *p)
 {
     if (!log->speaks) return;
-    double now = timer_now();
-    if (!log->is_begun) begin(log, p, now);
-    char *text = progress_text(log, p, now, true);
+    char *text = place_text(p);
     log_print(log, "%s", text);
     free(text);
 }

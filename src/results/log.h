@@ -17,6 +17,11 @@ void log_free(struct log *log); /* NULL is fine */
 
 /* One or more lines, printf. A newline is added at the end. */
 void log_print(struct log *log, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* What the run's elements are called in its rates: "particle", "cell"; not copied. */
+void log_element(struct log *log, const char *name);
+/* "12.3 million particle updates/s": elements times steps per second of wall time. Owned by the
+ * caller. */
+char *log_rate(const struct log *log, double per_second);
 /* fail_warn, and into log.txt. */
 void log_warn(struct log *log, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
@@ -29,7 +34,8 @@ struct log_progress {
  * times a second. File or batch log: a line each 30 s and at each tenth of the run. The first call
  * starts the clock. */
 void log_progress(struct log *log, const struct log_progress *progress);
-/* Ends the progress line with the last state; later output starts on a fresh line. */
+/* Ends the progress line with the last state, without a rate (the rate of the whole run follows
+ * elsewhere); later output starts on a fresh line. */
 void log_progress_end(struct log *log, const struct log_progress *progress);
 
 /* 1.2 s, 3 min 05 s, 2 h 07 min. Returns `text`. */

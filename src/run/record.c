@@ -45,7 +45,8 @@ static void add_scale(struct report *r, struct sim *s)
     int64_t sum[3] = {mine.n_interaction, mine.sent.bytes, s->dev->counters.peak_bytes};
     comm_sum_i64(s->comm, sum, 3);
     report_integer(r, "elements", s->n_first);
-    report_integer(r, "elements_left", s->n_removed);
+    report_integer(r, "elements_removed", s->n_removed);
+    report_integer(r, "elements_left", s->n_removed); /* the name of 0.1, until 0.3 */
     report_integer(r, "interactions", sum[0]);
     report_integer(r, "steps", s->step);
     report_number(r, "dt", s->dt);
@@ -130,6 +131,26 @@ static void add_kernels(struct report *r, const struct sim *s)
     report_end(r);
 }
 
+/* The same two times and the same rate as in wall_s and element_steps_per_s. */
+static void print_rate(const struct sim *s)
+{
+    char loop[LOG_DURATION_SIZE], output[LOG_DURATION_SIZE];
+    const double *total = s->timers.total;
+    char *rate =
+        log_rate(s->log, total[TIMER_LOOP] > 0 ? s->account.element_steps / total[TIMER_LOOP] : 0);
+    log_print(s->log, "%lld steps in %s, and %s for output: %s", (long long)(s->step - s->begun_at),
+        log_duration(total[TIMER_LOOP], loop), log_duration(total[TIMER_OUTPUT], output), rate);
+    free(rate);
+}
+
+static void print_digest(struct sim *s, const char *digest)
+{
+    if (!digest) log_print(s->log, "no digest: the state holds NaN");
+    else if (s->ops->n_element(s) == 0)
+        log_print(s->log, "no element is left, so there is no state to digest");
+    else log_print(s->log, "digest %s", digest);
+}
+
 bool record_write(struct sim *s, int exit_code, bool observed)
 {
     char digest[17] = "";
@@ -165,13 +186,9 @@ bool record_write(struct sim *s, int exit_code, bool observed)
     report_text(r, "digest", whole ? digest : NULL);
     bool written = report_write(r, s->comm, s->options->dir);
     if (observed) {
-        double loop = s->timers.total[TIMER_LOOP];
-        log_print(s->log,
-            "%lld steps of %lld elements in %.2f s: %.3g million element steps per second",
-            (long long)(s->step - s->begun_at), (long long)s->n_first, loop,
-            loop > 0 ? s->account.element_steps / loop * 1e-6 : 0);
+        print_rate(s);
         balance_print(s->balance, s->log);
-        log_print(s->log, "digest %s", whole ? digest : "none: the state holds NaN");
+        print_digest(s, whole ? digest : NULL);
     }
     report_free(r);
     free(hash);

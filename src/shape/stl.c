@@ -123,7 +123,7 @@ static char *read_ascii(const char *path, const char *text, struct soup *soup)
             n_corner++;
         } else if (is_word(at, length, "endloop")) {
             if (n_corner != 3)
-                return fail_format("%s:%d: %d corners in a triangle", path, line, n_corner);
+                return fail_format("%s:%d: a triangle has %d of its 3 corners", path, line, n_corner);
             memcpy(soup_add(soup), corner, sizeof corner);
             n_corner = 0;
         } else if (is_word(at, length, "endsolid") || is_word(at, length, "solid")) {
@@ -133,7 +133,7 @@ static char *read_ascii(const char *path, const char *text, struct soup *soup)
             length += strcspn(at + length, "\n");
         } else if (!is_word(at, length, "outer") && !is_word(at, length, "loop") &&
                    !is_word(at, length, "endfacet")) {
-            return fail_format("%s:%d: '%.*s' is no word of an STL file", path, line,
+            return fail_format("%s:%d: '%.*s' is not a keyword of STL", path, line,
                 (int)(length < 40 ? length : 40), at);
         }
     }
@@ -158,12 +158,12 @@ static char *read_soup(const char *path, const unsigned char *data, size_t size,
         strlen((const char *)data) == size)
         return read_ascii(path, (const char *)data, soup);
     if (size > 0 && is_text(data, size) && strncasecmp((const char *)data, "solid", 5) != 0)
-        return fail_format("%s: no STL file: text that does not begin with 'solid'", path);
+        return fail_format("%s: not an STL file: text that does not begin with 'solid'", path);
     if (size < HEADER)
         return fail_format("%s: neither ASCII nor binary STL: %zu bytes", path, size);
     size_t needed = HEADER + (size_t)u32_at(data + 80) * RECORD;
     return fail_format("%s: %s: %u triangles need %zu bytes, the file has %zu", path,
-        size < needed ? "cut off" : "no STL file", u32_at(data + 80), needed, size);
+        size < needed ? "cut off" : "not an STL file", u32_at(data + 80), needed, size);
 }
 
 /* Vertices in cells of a hash table: two corners within `near` of each other in each coordinate are
@@ -318,7 +318,7 @@ struct stl *stl_read(const char *path, double scale, char **error)
     free(soup.corner);
     for (int k = 0; k < 3 * stl->n_vertex; k++) stl->vertex[k] *= scale;
     if (stl->n_triangle == 0) {
-        *error = fail_format("%s: none of its %d triangles has an area", path, stl->n_dropped);
+        *error = fail_format("%s: all triangles have zero area (%d)", path, stl->n_dropped);
         stl_free(stl);
         return NULL;
     }

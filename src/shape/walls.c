@@ -162,7 +162,7 @@ static void add_stl(
         return;
     }
     if (stl->n_dropped)
-        fail_warn("%s: %d of %d triangles have no area and are left out", wall->stl, stl->n_dropped,
+        fail_warn("%s: triangles of zero area are left out: %d of %d", wall->stl, stl->n_dropped,
             stl->n_dropped + stl->n_triangle);
     add_mesh(walls, w, stl);
     stl_free(stl);

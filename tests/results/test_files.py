@@ -243,7 +243,8 @@ class Record(Folder):
         lines = run.stdout.splitlines()
         self.assertEqual(lines[:2], ["before the folder", "17 elements"])
         self.assertEqual([line.split("(")[1].split(" %")[0] for line in lines[2:]], ["10", "20", "30", "40", "50", "60", "70", "80", "90", "100"])
-        self.assertTrue(lines[-1].endswith("in all"))
+        self.assertEqual(lines[-1], "step 1000 of 1000 (100 %)  t = 0.01 of 0.01 s")
+        self.assertRegex(lines[-2], r" million element updates/s  \S+ s left\Z")
 
     def test_terminal_gets_one_line(self):
         """On a terminal the progress line is rewritten: wiped before other output, never scrolled."""

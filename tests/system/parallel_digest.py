@@ -11,7 +11,7 @@ RANKS = {"funnel": FULL, "column": FULL, "hertz": FULL}
 def of_all(run):
     """What must not depend on ranks."""
     record = run.record()
-    same = {key: record[key] for key in ("digest", "steps", "dt", "dt_limit", "elements", "elements_left", "rebuilds", "energy", "momentum")}
+    same = {key: record[key] for key in ("digest", "steps", "dt", "dt_limit", "elements", "elements_removed", "rebuilds", "energy", "momentum")}
     return same, run.series(), run.contacts()
 
 

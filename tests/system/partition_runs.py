@@ -24,7 +24,7 @@ class Partition(parallel_runs.Case):
         record = run.record()
         frame = parallel_runs.frames.Frame(run.frames()[-1])
         touching = sorted(zip(frame.field("id"), frame.field("coordination"))) if "coordination" in frame.names else None
-        same = [record[key] for key in ("digest", "steps", "dt_limit", "elements_left", "rebuilds", "energy", "momentum")]
+        same = [record[key] for key in ("digest", "steps", "dt_limit", "elements_removed", "rebuilds", "energy", "momentum")]
         return same, run.series(), run.contacts(), touching
 
     def work(self, record):
@@ -38,7 +38,7 @@ class Partition(parallel_runs.Case):
             record = run.record()
             self.assertEqual(record["partition"]["method"], partition["method"])
             self.assertEqual(record["plain_steps"]["allocations"], 0)
-            self.assertEqual(sum(rank["elements"] for rank in record["partition"]["ranks"]), record["elements"] - record["elements_left"])
+            self.assertEqual(sum(rank["elements"] for rank in record["partition"]["ranks"]), record["elements"] - record["elements_removed"])
             return record
 
     def test_particles(self):

@@ -68,7 +68,7 @@ class Numerics(Failures):
                 run = self.run_scene(self.put(packed), ranks, "--steps", "2000")
                 record = run.record()
                 if domain and run.code == 0:
-                    self.assertEqual((record["exit"], record["elements_left"]), (0, record["elements"]))
+                    self.assertEqual((record["exit"], record["elements_removed"]), (0, record["elements"]))
                 else:
                     self.assertEqual(run.code, 5, run.err)
                     self.assertRegex(run.err, r"(?m)^democles: error: step \d+, .*not numbers")

@@ -36,7 +36,7 @@ class Short(robust_jobs.Case):
 
     def test_mixed(self):
         record = self.runs("mixed", 8).record()
-        self.assertEqual(record["elements_left"], 1)
+        self.assertEqual((record["elements_removed"], record["elements_left"]), (1, 1))  # one name, and that of 0.1
         for term, value in record["energy"]["end"].items():
             self.assertNotEqual(value, 0, term)
 

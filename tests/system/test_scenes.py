@@ -130,7 +130,7 @@ class Checked(Scenes):
         self.assertEqual((run.code, run.err), (0, []))
         self.assertTrue(run.out.startswith("two kinds of balls\n"))
         for text in ("elements: 32\n", "small: 30 of glass, diameter 0.002 m,", "listed: 2 of glass, diameter 0.004 m,",
-                     "walls: 2, of 2 primitives\n", "floor: steel, plane\n", "mould: steel, 1 triangles, until 0.0005 s\n",
+                     "walls: 2, of 2 facets\n", "floor: steel, plane\n", "mould: steel, 1 triangle, until 0.0005 s\n",
                      "k_t 500 N/m", "in 1000 steps of 1e-06 s",
                      "every 0.0003 s, 5 in all", "energy.csv every 0.0001 s"):
             self.assertIn(text, run.out)
@@ -209,6 +209,17 @@ class Ran(Scenes):
         again = self.call("run", "scene.yaml", ranks=3)
         self.assertEqual((again.code, len(again.err)), (2, 1))
         self.assertRegex(again.err[0], "holds results already; --force replaces, -o DIR writes elsewhere")
+
+    def test_no_element_left(self):
+        """An empty state has a digest of zeros, which looks like a mistake unless the log says why."""
+        change = ("walls=", "elements.small=", "elements.listed.velocity=[0, 0, 1000]", "time.step=1e-5 s",
+                  "domain={box: {min: [0, 0, 0], max: [0.3, 0.3, 0.3]}, remove_outside: true}")
+        run = self.call("run", "scene.yaml", "-o", "out", *(word for key in change for word in ("--set", key)))
+        self.assertEqual((run.code, run.err), (0, []))
+        self.assertEqual(run.out.splitlines()[-1], "no element is left, so there is no state to digest")
+        with open(os.path.join(self.dir, "out", "run.json")) as file:
+            record = json.load(file)
+        self.assertEqual((record["elements_removed"], record["digest"]), (2, 16 * "0"))
 
     def test_memory(self):
         keys = ("walls=", "elements[0].fill.count=2500", "elements[0].fill.region.box.max=[28 mm, 28 mm, 1 m]", "elements[0].velocity=[0, 0, 1]",

@@ -58,17 +58,17 @@ static void test_refused(void **unused)
     scratch_box(zero, one, corner);
     size_t size = make_binary(corner, 12, data);
     refuse(data, size - 20, ": cut off: 12 triangles need 684 bytes, the file has 664");
-    refuse(data, size + 3, ": no STL file: 12 triangles need 684 bytes, the file has 687");
+    refuse(data, size + 3, ": not an STL file: 12 triangles need 684 bytes, the file has 687");
     corner[9 * 7 + 4] = (double)NAN;
     make_binary(corner, 12, data);
     refuse(data, size, ": triangle 7: corner 2 is not finite");
     refuse(data, make_binary(corner, 0, data), ": no triangle");
     refuse("ab\1", 3, ": neither ASCII nor binary STL: 3 bytes");
-    refuse_text("abc", ": no STL file: text that does not begin with 'solid'");
+    refuse_text("abc", ": not an STL file: text that does not begin with 'solid'");
     refuse_text(
         "v 500 500 500\nv 510 500 500\nv 500 510 500\nv 500 500 510\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf "
         "2 3 4\n",
-        ": no STL file: text that does not begin with 'solid'");
+        ": not an STL file: text that does not begin with 'solid'");
     refuse("", 0, ": neither ASCII nor binary STL: 0 bytes");
     refuse_text("solid\nendsolid\n", ": no triangle");
     refuse_text(
@@ -82,10 +82,10 @@ static void test_refused(void **unused)
     refuse_text("solid s\n" FACET("0 0 0", "1 0 0", "0 1 0\nvertex 3 3 3") "endsolid\n",
         ":7: more than three corners in a triangle");
     refuse_text(
-        "solid s\nouter loop\nvertex 0 0 0\nendloop\nendsolid\n", ":4: 1 corners in a triangle");
-    refuse_text("solid s\nfacte normal\nendsolid\n", ":2: 'facte' is no word of an STL file");
+        "solid s\nouter loop\nvertex 0 0 0\nendloop\nendsolid\n", ":4: a triangle has 1 of its 3 corners");
+    refuse_text("solid s\nfacte normal\nendsolid\n", ":2: 'facte' is not a keyword of STL");
     refuse_text("solid s\n" FACET("0 0 0", "1 0 0", "2 0 0") "endsolid\n",
-        ": none of its 1 triangles has an area");
+        ": all triangles have zero area (1)");
 }
 
 static void test_unreadable(void **unused)
