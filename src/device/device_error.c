@@ -80,7 +80,7 @@ const char *device_error_name(cl_int code)
 {
     for (size_t i = 0; i < sizeof error_table / sizeof *error_table; i++)
         if (error_table[i].code == code) return error_table[i].name;
-    return "a code that OpenCL 1.2 does not know";
+    return "an error code that OpenCL 1.2 does not define";
 }
 
 void device_check(cl_int code, const char *call, const char *file, int line)

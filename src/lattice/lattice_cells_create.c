@@ -79,7 +79,8 @@ static void check_counts(const struct scene *scene, const struct lattice_cells *
         if (cells->n_of_body[b] > 0) continue;
         lattice_fault(scene, errors, body->line, body->column, "bodies[%d]: '%s' has no cell: %s",
             b, body->name,
-            cut[b].n > 0 ? "later bodies have taken them all" : "no centre of one is inside");
+            cut[b].n > 0 ? "later bodies have taken them all"
+                         : "its shape contains no cell centre");
     }
     if (cells->n_kind > UINT8_MAX)
         scene_errors_add(

@@ -100,7 +100,7 @@ static void hold(struct builder *b, int k)
     for (int c = 0; c < 6; c++) {
         if (!(twice >> c & 1)) continue;
         char *text = fail_format(
-            "the motion in %s of some of these cells is prescribed by a boundary before this one",
+            "an earlier boundary already prescribes the motion in %s of some of these cells",
             dof_name[c]);
         fault(b, k, "where", text);
         free(text);

@@ -63,7 +63,7 @@ static void plan(struct sim *s)
     s->dt = s->from ? s->from->dt : t->step > 0 ? t->step : t->safety * s->dt_limit;
     if (!(s->dt > 0) || isinf(s->dt))
         fail_stop_together(EXIT_SCENE,
-            "%s: time.step: auto finds no limit in this scene, for no two cells are linked; give "
+            "%s: time.step: auto: no two cells are linked, so nothing limits the time step; give "
             "a value",
             s->scene->path);
     s->lattice->input = lattice_input_create(s->scene, s->lattice->cells, s->dt);
@@ -172,13 +172,13 @@ static void check_limit(struct sim *s)
     s->limit_at = s->step;
     if (s->dt > s->dt_limit && !s->scene->time.allow_unstable)
         output_stop_numerics(s,
-            "the time step %.4g s is over its limit %.4g s; take a smaller time.step, or set "
-            "time.allow_unstable",
+            "the time step %.4g s exceeds the critical time step %.4g s; use a smaller "
+            "time.step, or set time.allow_unstable",
             s->dt, s->dt_limit);
     if (!digest(s, &unused))
         output_stop_numerics(s,
-            "displacements or velocities are not numbers any more; the time step %.4g s is %.3g "
-            "of its limit",
+            "displacements or velocities are not numbers; the time step %.4g s is %.3g of the "
+            "critical one",
             s->dt, s->dt / s->dt_limit);
 }
 

@@ -100,8 +100,8 @@ bool lattice_restore_energy(const struct sim *s, bool asked)
     bool has = h5_has(s->from->reader, "cells", "ledger");
     if (asked && !has)
         fail_stop_together(EXIT_SCENE,
-            "a measure of energy cannot begin in a run that goes on: '%s' has nothing of what it "
-            "was until then",
+            "a measure of energy cannot be added to a restarted run: '%s' has no record of its "
+            "earlier values",
             s->from->path);
     return has;
 }

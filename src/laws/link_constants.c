@@ -8,12 +8,13 @@ const char *link_constants_refusal(enum link_set set, struct link_material m)
     if (!(m.density > 0) || !isfinite(m.density)) return "density must be above 0";
     if (!(m.young > 0) || !isfinite(m.young)) return "young must be above 0";
     if (!(m.poisson > -1 && m.poisson < 0.5))
-        return "poisson must lie between -1 and 0.5, both excluded: beyond, no elastic solid is "
+        return "poisson must lie between -1 and 0.5, both excluded: no other elastic solid is "
                "stable";
     if (!(m.damping >= 0) || !isfinite(m.damping))
-        return "the damping of links must not be below 0";
+        return "the damping of links must not be negative";
     if (set == LINK_SEED && (m.poisson < 0 || m.poisson > 0))
-        return "poisson must be 0: pair springs without volumetric term have no other";
+        return "poisson must be 0: the pair springs of this law, without a volumetric term, have "
+               "no other";
     return NULL;
 }
 

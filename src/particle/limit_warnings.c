@@ -107,19 +107,19 @@ void limit_warnings(const struct scene *scene, const struct elements_host *eleme
     free(all);
     if (worst.contact < CONTACT_STEPS * dt)
         scene_errors_add(warnings,
-            "the shortest contact lasts %.3g s, %.1f time steps of %.3g s; below %d its "
-            "restitution is inaccurate",
+            "the shortest contact lasts %.3g s, %.1f time steps of %.3g s; with fewer than %d "
+            "its restitution is inaccurate",
             worst.contact, worst.contact / dt, dt, CONTACT_STEPS);
     if (speed * dt > SHARE * r)
         scene_errors_add(warnings,
-            "at %.3g m/s, the fastest that this scene allows, elements move %.2g of the smallest "
-            "radius in one time step; above "
-            "%.1f contacts begin too deep",
+            "at %.3g m/s, the largest relative speed that this scene allows, particles move by "
+            "%.2g of the smallest radius in one time step; above %.1f contacts begin with too "
+            "large an overlap",
             speed, speed * dt / r, SHARE);
     if (SHARE * worst.bond < dt)
         scene_errors_add(warnings,
-            "bonds reach %.3g m (binding force over stiffness); at %.3g m/s, where they just "
-            "hold, that is crossed in %.1f time "
-            "steps; below %.0f bonds break at the wrong moment",
+            "bonds act up to a gap of %.3g m (pull-off force over stiffness); a particle that "
+            "they just hold, at %.3g m/s, crosses it in %.1f time steps; with fewer than %.0f "
+            "bonds break at the wrong time",
             worst.range, worst.bond_speed, worst.bond / dt, 1 / SHARE);
 }

@@ -256,7 +256,8 @@ void particle_contacts_restore(struct sim *s, const int32_t *owner, bool wall)
     n[1] = fill(s, &l, &t, wall);
     comm_sum_i64(s->comm, n, 2);
     if (n[0] != n[1])
-        fail_stop_together(EXIT_IO, "'%s': %lld of %lld contacts of table %s are in no list",
+        fail_stop_together(EXIT_IO,
+            "'%s': %lld of %lld contacts of table %s are missing from the neighbour list",
             s->from->path, (long long)(n[0] - n[1]), (long long)n[0], t.name);
     frame_table_free(&t);
     list_free(&l);

@@ -76,7 +76,8 @@ static void set_step(struct sim *s)
     s->dt = s->from ? s->from->dt : t->step > 0 ? t->step : t->safety * particle_limit_dense(s);
     if (!(s->dt > 0) || isinf(s->dt))
         fail_stop_together(EXIT_SCENE,
-            "%s: time.step: auto finds no limit in this scene; give a value", s->scene->path);
+            "%s: time.step: auto: nothing in this scene limits the time step; give a value",
+            s->scene->path);
 }
 
 /* What the run has kept account of it goes on to; what it has not cannot begin now. */
@@ -89,7 +90,7 @@ static void keep_features(struct sim *s)
                                                                               : NULL;
     if (missing)
         fail_stop_together(EXIT_SCENE,
-            "%s cannot begin in a run that goes on: '%s' has nothing of what it was until then",
+            "%s cannot be added to a restarted run: '%s' has no record of its earlier values",
             missing, s->from->path);
     s->particle->features.orientation = orientation;
     s->particle->features.energy = energy;

@@ -44,8 +44,7 @@ void particle_check_limit(struct sim *s)
     s->dt_limit = s->dt_limit > 0 ? fmin(s->dt_limit, limit.dt) : limit.dt;
     if (s->dt <= limit.dt || s->scene->time.allow_unstable) return;
     output_stop_numerics(s,
-        "the time step %.4g s is over its limit %.4g s, set by the contacts of element %lld; take "
-        "a smaller time.step "
-        "(or softer contacts), or set time.allow_unstable",
+        "the time step %.4g s exceeds the critical time step %.4g s, set by the contacts of "
+        "element %lld; use a smaller time.step (or softer contacts), or set time.allow_unstable",
         s->dt, limit.dt, (long long)limit.gid);
 }

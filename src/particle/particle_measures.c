@@ -11,7 +11,8 @@
 
 int particle_measure_columns(enum measure_kind kind, const struct series_column **column)
 {
-    static const struct series_column count[] = {{"count", "1"}, {"present", "1"}, {"removed", "1"}};
+    static const struct series_column count[] = {
+        {"count", "1"}, {"present", "1"}, {"removed", "1"}};
     static const struct series_column energy[] = {{"kinetic", "J"}, {"rotational", "J"},
         {"gravity", "J"}, {"elastic", "J"}, {"dashpot_normal", "J"}, {"dashpot_tangential", "J"},
         {"sliding", "J"}, {"rolling", "J"}, {"bonds", "J"}, {"wall_work", "J"}, {"removed", "J"},
@@ -132,11 +133,11 @@ static void check_energy(struct sim *s, const struct energy_sums *e)
                 fabs(e->removed) + fabs(e->gravity - start->gravity);
     if (isnan(wrong))
         output_stop_numerics(
-            s, "the energy is not a number any more, or beyond measure; take a smaller time.step");
+            s, "the energy is not a number, or too large to measure; use a smaller time.step");
     if (wrong > 10 * in + 1e-9 * fabs(e->gravity) && !s->scene->time.allow_unstable)
         output_stop_numerics(s,
-            "the energy runs away: the budget is off by %.3g J, and %.3g J came in; take a "
-            "smaller time.step",
+            "the energy runs away: its balance error is %.3g J, although only %.3g J were "
+            "supplied; use a smaller time.step",
             wrong, in);
 }
 

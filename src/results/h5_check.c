@@ -83,10 +83,10 @@ static const char *sum_part(
     hsize_t shape[2] = {0, 1};
     int rank = H5Sget_simple_extent_ndims(space);
     if (rank < 1 || rank > 2 || H5Sget_simple_extent_dims(space, shape, NULL) < 0)
-        return "its shape is none that democles writes";
+        return "its shape is not one that democles writes";
     hid_t memory;
     enum column_type type = type_of(stored, &memory);
-    if (memory < 0) return "its type is none that democles writes";
+    if (memory < 0) return "its type is not one that democles writes";
     /* A damaged header may claim any size: never ask for more than the file can hold. */
     hsize_t stored_bytes = H5Dget_storage_size(dataset), row = shape[1] * H5Tget_size(memory);
     const char *wrong =

@@ -146,7 +146,7 @@ struct series *series_resume(const struct comm *comm, const char *dir, const cha
             stop(series, "shorten");
         open_file(series, "ae");
     } else {
-        fail_warn("'%s' holds nothing; it begins anew", series->path);
+        fail_warn("'%s' is empty; it is started over", series->path);
         begin(series, column);
     }
     free(text);

@@ -73,7 +73,7 @@ static char *walk_file(struct walk *w, hid_t file)
         htri_t exists = H5Lexists(file, group[k], H5P_DEFAULT);
         if (exists < 0) wrong = fail_strdup("its list of groups cannot be read");
         else if (exists == 0)
-            wrong = fail_format("no frame of democles: it has no group %s", group[k]);
+            wrong = fail_format("not a frame of democles: it has no group %s", group[k]);
     }
     if (wrong) return wrong;
     int64_t version = number_of(file, "format_version"), n = number_of(file, "n_dataset");

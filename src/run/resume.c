@@ -45,7 +45,7 @@ static int64_t *share_frames(const struct comm *comm, const char *dir, int64_t *
     if (*n < 0)
         fail_stop_together(*n == -ENOENT || *n == -ENOTDIR ? EXIT_SCENE : EXIT_IO,
             "cannot open the folder '%s': %s", dir, strerror((int)-*n));
-    if (*n == 0) fail_stop_together(EXIT_SCENE, "'%s' holds no frame_*.hdf to go on from", dir);
+    if (*n == 0) fail_stop_together(EXIT_SCENE, "'%s' contains no frame_*.hdf to resume from", dir);
     if (comm->rank > 0) index = fail_alloc((size_t)*n * sizeof *index);
     comm_bcast(comm, index, (size_t)*n * sizeof *index, 0);
     return index;
@@ -60,7 +60,7 @@ struct resume *resume_open(const struct comm *comm, struct log *log, const char 
         char *wrong = snapshot_check(comm, path);
         if (!wrong) break;
         log_warn(log, "'%s' cannot be used: %s%s", path, wrong,
-            k + 1 < n ? "; the frame before is looked at" : "");
+            k + 1 < n ? "; trying the frame before it" : "");
         free(wrong);
         free(path);
     }
@@ -123,9 +123,9 @@ static void refuse_changes(const char *const *set, int n_set)
     for (int k = 0; k < n_set; k++)
         if (!can_change(set[k]))
             fail_stop_together(EXIT_SCENE,
-                "--set %s: a run that goes on cannot change '%.*s'; it can change title, "
-                "time.end, time.allow_unstable, lattice.relax.tolerance, "
-                "output, measure, partition, and where files are",
+                "--set %s: a restarted run cannot change '%.*s'; it can change title, time.end, "
+                "time.allow_unstable, lattice.relax.tolerance, output, measure, partition, and "
+                "the paths of files",
                 set[k], (int)strcspn(set[k], "="), set[k]);
 }
 
@@ -136,7 +136,9 @@ static void warn_of_edits(const struct comm *comm, const char *path, const char 
     size_t n = 0;
     char *file = comm->rank == 0 ? files_read(path, &n, error) : NULL;
     if (file && strcmp(file, text))
-        fail_warn("'%s' is not the scene of the frame, which counts; changes go by --set", path);
+        fail_warn(
+            "'%s' differs from the scene in the frame and is ignored; use --set to change a key",
+            path);
     free(file);
 }
 
@@ -206,7 +208,7 @@ void resume_check_inputs(const struct sim *s)
 {
     if (h5_read_i64(s->from->reader, "inputs") == s->inputs) return;
     fail_stop_together(EXIT_SCENE,
-        "what the scene of '%s' makes is not what the frame was made of: a file that it reads, or "
-        "this program, has changed since",
+        "the scene of '%s' no longer gives the initial state that this run began with: a file "
+        "that it reads, or this program, has changed since",
         s->from->path);
 }

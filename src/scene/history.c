@@ -119,7 +119,7 @@ static char *read_lines(struct history *table, const char *name, FILE *file)
         has_line = true;
         if (is_header) continue;
         if (!wrong && table->n_point > 0 && !(point[0] > table->point[table->n_point - 1][0]))
-            wrong = "times must ascend";
+            wrong = "times must increase";
         if (wrong) {
             problem = fail_format("%s:%d: %s", name, number, wrong);
             break;

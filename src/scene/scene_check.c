@@ -86,7 +86,7 @@ static void check_contact(struct scene_reader *reader, int k)
         for (int n = 0; n < 3; n++) {
             char *part = fail_format("%s.%s", path, PART[n]);
             if (scene_check_is_given(reader, part))
-                scene_issue_on(reader, part, "needs 'normal' beside it");
+                scene_issue_on(reader, part, "requires 'normal'");
             free(part);
         }
     } else if (scene_check_is_given(reader, law) && !scene_issue_is_below(reader, law)) {
@@ -173,13 +173,14 @@ static void check_domain(struct scene_reader *reader)
     const struct domain *domain = &reader->scene->domain;
     scene_check_box(reader, fail_strdup("domain.box"), domain->min, domain->max, false);
     if ((domain->periodic[0] || domain->periodic[1] || domain->periodic[2]) && !domain->has_box)
-        scene_issue_on(reader, "domain.periodic", "needs 'box': what repeats must have an extent");
+        scene_issue_on(
+            reader, "domain.periodic", "requires 'box', the extent of the periodic domain");
 }
 
 static void check_scheme(struct scene_reader *reader)
 {
     if (reader->scene->time.scheme != SCHEME_LEAPFROG)
-        scene_issue_on(reader, "time.scheme", "particles take leapfrog alone");
+        scene_issue_on(reader, "time.scheme", "method: particles supports leapfrog only");
 }
 
 static void check_time(struct scene_reader *reader)

@@ -24,14 +24,15 @@ static void check_damping(struct scene_reader *reader, const struct material *m)
          *link = fail_format("%s.link", path);
     if (!scene_issue_is_below(reader, path) && is_given(reader, ratio) &&
         (is_given(reader, mass) || is_given(reader, link)))
-        scene_issue_on(reader, ratio, "stands in place of 'mass' and 'link', not beside them");
+        scene_issue_on(reader, ratio, "cannot be combined with 'mass' and 'link'");
     else if (!scene_issue_is_below(reader, path) && !scene_issue_is_below(reader, "time.scheme")) {
         bool by_link =
             m->link_damping > 0 || (m->damping_ratio > 0 && m->damping_by == DAMPING_LINK);
         if (by_link &&
             !(lattice_limit_factor((enum lattice_scheme)reader->scene->time.scheme, 1) > 0))
-            scene_issue_on(
-                reader, path, "this scheme takes no damping of links; leapfrog and rk4 do");
+            scene_issue_on(reader, path,
+                "this scheme does not support stiffness-proportional (link) damping; leapfrog "
+                "and rk4 do");
     }
     free(path);
     free(ratio);
@@ -91,7 +92,8 @@ static void check_boundary(struct scene_reader *reader, int k)
         if (b->kind == BOUNDARY_FIX && !fixes)
             scene_issue_on(reader, fix, "an empty list fixes nothing");
         if (b->kind == BOUNDARY_FIX && b->history.kind != HISTORY_CONSTANT)
-            scene_issue_on(reader, history, "what is fixed stays so");
+            scene_issue_on(
+                reader, history, "'fix' takes no history: a support holds for the whole run");
         bool prescribes = b->kind == BOUNDARY_VELOCITY || b->kind == BOUNDARY_ANGULAR_VELOCITY;
         if (prescribes && is_all_free(b)) scene_issue_on(reader, path, "all components are free");
     }
@@ -108,11 +110,11 @@ void scene_check_lattice(struct scene_reader *reader)
     for (int k = 0; k < reader->scene->n_boundary; k++) check_boundary(reader, k);
     if (reader->scene->lattice.relax && !scene_issue_is_below(reader, "time.scheme") &&
         reader->scene->time.scheme != SCHEME_LEAPFROG)
-        scene_issue_on(reader, "time.scheme", "lattice.relax takes leapfrog alone");
+        scene_issue_on(reader, "time.scheme", "lattice.relax supports leapfrog only");
     if (!scene_issue_is_below(reader, "partition.boundary") &&
         reader->scene->partition.boundary == CUT_PAIRS_ASSIGNED)
-        scene_issue_on(reader, "partition.boundary",
-            "assigned is for particles: links of a lattice are computed by both their cells");
+        scene_issue_on(
+            reader, "partition.boundary", "'assigned' is only valid with method: particles");
 }
 
 void scene_check_derive_damping(struct scene *scene)

@@ -22,7 +22,7 @@
  * the record is the region. */
 #define BOX_KEYS(base, record, member, need)                                                       \
     {base ".box", KEY_MAP, need, .mark = IS(record, member kind, REGION_BOX),                      \
-        .text = "box along the axes"},                                                             \
+        .text = "box parallel to the axes"},                                                       \
     {base ".box.min", KEY_VECTOR, NEEDED, UNIT_LENGTH, VEC(record, member min),                    \
         .text = "lowest corner"},                                                                  \
     {base ".box.max", KEY_VECTOR, NEEDED, UNIT_LENGTH, VEC(record, member max),                    \
@@ -40,13 +40,13 @@
     {base ".sphere", KEY_MAP, need, .mark = IS(record, member kind, REGION_SPHERE),                \
         .text = "sphere"},                                                                         \
     {base ".sphere.center", KEY_VECTOR, NEEDED, UNIT_LENGTH, VEC(record, member center),           \
-        .text = "its middle"},                                                                     \
+        .text = "centre of the sphere"},                                                           \
     {base ".sphere.radius", KEY_NUMBER, NEEDED, UNIT_LENGTH, .range = ABOVE_ZERO,                  \
         .at = AT(record, member radius), .text = "radius"}
 #define STL_KEYS(base, record, member)                                                             \
     {base ".stl", KEY_FILE, ONE_OF, .at = AT(record, member stl),                                  \
         .mark = IS(record, member kind, REGION_STL),                                               \
-        .text = "inside of a closed surface in an STL file"},                                      \
+        .text = "inside of a closed triangle mesh of an STL file"},                                \
     {base ".scale", KEY_NUMBER, OPTIONAL, UNIT_LENGTH, "1", ABOVE_ZERO, .when = "stl",             \
         .absent = 1, .at = AT(record, member scale), .text = "metres per unit of the STL file"}
 /* clang-format on */

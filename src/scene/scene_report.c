@@ -26,8 +26,8 @@ struct scene *scene_report_read(
     uint64_t hash = scene->hash;
     comm_bcast(comm, &hash, sizeof hash, 0);
     if (hash != scene->hash)
-        scene_errors_add(
-            &errors, "%s: rank %d reads another scene there than rank 0", path, comm->rank);
+        scene_errors_add(&errors, "%s: rank %d reads a different scene from this path than rank 0",
+            path, comm->rank);
     scene_report_errors(comm, &errors);
     return scene;
 }

@@ -64,9 +64,9 @@ static void apply(struct scene_reader *reader, const char *key, struct scene_nod
             fail_format("%.*s", (int)(next - key) - (next > key && *next && next[-1] == '.'), key);
         int k = scene_path_follow(node, &step);
         const char *problem = NULL;
-        if (node->kind == NODE_SCALAR) problem = "what it would be part of is a single value";
+        if (node->kind == NODE_SCALAR) problem = "its parent is a single value, not a mapping";
         else if (node->kind == NODE_MAPPING && !step.word)
-            problem = "what it would be part of is no list";
+            problem = "its parent is a mapping, not a list";
         else if (node->kind == NODE_MAPPING && k < 0 && *next == '[')
             problem = "the scene does not give this list; set it as a whole";
         if (problem) scene_issue_at(reader, value, path, "%s", problem);

@@ -68,7 +68,7 @@ static bool read_pairs(
         bool read = is_pair && scene_number(&own, pair->item[0], own.path, &(*point)[k][0]);
         good = read && scene_number(&second, pair->item[1], own.path, &(*point)[k][1]) && good;
         if (read && good && k > 0 && !((*point)[k][0] > (*point)[k - 1][0])) {
-            scene_issue_at(p->reader, pair, own.path, "times must ascend");
+            scene_issue_at(p->reader, pair, own.path, "times must increase");
             good = false;
         }
         free((char *)own.path);

@@ -50,8 +50,8 @@ static int find_word(const struct scene_place *p, const struct scene_node *node,
         scene_issue_at(p->reader, node, p->path, "unknown %s '%s'; did you mean '%s'?", what,
             node->text, near);
     else if (*all)
-        scene_issue_at(
-            p->reader, node, p->path, "unknown %s '%s'; there is: %s", what, node->text, all);
+        scene_issue_at(p->reader, node, p->path, "unknown %s '%s'; expected one of: %s", what,
+            node->text, all);
     else scene_issue_at(p->reader, node, p->path, "unknown %s '%s'", what, node->text);
     return -1;
 }

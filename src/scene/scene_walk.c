@@ -105,13 +105,14 @@ static void report_unknown(struct scene_reader *reader, const struct spot *at)
         if (is_known(text, known, n)) continue;
         char *child = join(at->path, text);
         const char *near = nearest_name(text, known, n);
-        if (only) scene_issue_at(reader, at->map->key[k], child, "a key of method %s alone", only);
+        if (only)
+            scene_issue_at(reader, at->map->key[k], child, "only valid with method: %s", only);
         else if (near)
             scene_issue_at(reader, at->map->key[k], child, "unknown key; did you mean '%s'?", near);
         else if (n <= FEW) {
             char all[256];
             scene_values_join(all, sizeof all, known, n);
-            scene_issue_at(reader, at->map->key[k], child, "unknown key; there is: %s", all);
+            scene_issue_at(reader, at->map->key[k], child, "unknown key; expected one of: %s", all);
         } else scene_issue_at(reader, at->map->key[k], child, "unknown key");
         free(child);
     }
@@ -344,7 +345,8 @@ static void read_key(
     enum holds holds = condition(key, at);
     struct spot own = {key->path, path, value, at->record, at->depth};
     if (holds == HOLDS_NOT) {
-        if (value) scene_issue_at(reader, at->map->key[index], path, "only beside '%s'", key->when);
+        if (value)
+            scene_issue_at(reader, at->map->key[index], path, "only valid with '%s'", key->when);
     } else if (value) {
         read_value(reader, key, &own);
     } else if (key->fallback) {

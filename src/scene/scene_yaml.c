@@ -187,8 +187,7 @@ struct scene_node *scene_yaml_parse(
         take_problem(&parser, error);
     } else {
         if (!yaml_document_get_root_node(&document)) {
-            *error =
-                (struct scene_yaml_error){.line = 1, .column = 1, .text = "there is nothing in it"};
+            *error = (struct scene_yaml_error){.line = 1, .column = 1, .text = "the file is empty"};
         } else {
             struct conversion c = {.document = &document, .error = error, .set = set};
             node = convert(&c, 1, 0);

@@ -271,7 +271,7 @@ static void messages(void **state)
     cut_expect_one(f,
         LATTICE(" - {name: void, material: a, cell: 1, shape: {" BOX(
             0, 0, 0, 2, 2, 2) "}, minus: [{" BOX(-1, -1, -1, 3, 3, 3) "}]}\n"),
-        "scene.yaml:5:4: bodies[0]: 'void' has no cell: no centre of one is inside");
+        "scene.yaml:5:4: bodies[0]: 'void' has no cell: its shape contains no cell centre");
     cut_expect_one(f, LATTICE(CUBE(2) BODY("cover", "b", "1", BOX(0, 0, 0, 2, 2, 2))),
         "scene.yaml:5:4: bodies[0]: 'cube' has no cell: later bodies have taken them all");
     cut_expect_one(f,

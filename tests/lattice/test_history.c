@@ -137,7 +137,7 @@ static void files(void **unused)
     expect_file("0,1\n1,x\n", "2: the factor is not a number", 0);
     expect_file("0;1\n", "1: expected time, factor", 0);
     expect_file("0,1,2\n", "1: more than a time and a factor", 0);
-    expect_file("0,1\n1,2\n1,3\n", "3: times must ascend", 0);
+    expect_file("0,1\n1,2\n1,3\n", "3: times must increase", 0);
     expect_file("0,inf\n", "1: the factor is not a number", 0);
     expect_file("time,factor\n", " no point", 0);
 }

@@ -52,7 +52,7 @@ static void types(void **state)
     fixture_expect_one(f, SCENE(ONE "precision: doubel\n"),
         "scene.yaml:5:12: precision: unknown word 'doubel'; did you mean 'double'?");
     fixture_expect_one(f, SCENE(ONE "precision: half\n"),
-        "scene.yaml:5:12: precision: unknown word 'half'; there is: double, mixed, single");
+        "scene.yaml:5:12: precision: unknown word 'half'; expected one of: double, mixed, single");
     fixture_expect_one(
         f, SCENE(ONE "output:\n"), "scene.yaml:5:8: output: expected a mapping, found nothing");
     fixture_expect_one(f, SCENE(ONE "output: {every: }\n"),
@@ -72,10 +72,11 @@ static void types(void **state)
     fixture_expect_one(f, SCENE("elements: []\n"),
         "scene.yaml:4:11: elements: expected a list of mappings, found an empty one");
     fixture_expect_one(
-        f, SCENE(ONE "bodies: []\n"), "scene.yaml:5:1: bodies: a key of method lattice alone");
+        f, SCENE(ONE "bodies: []\n"), "scene.yaml:5:1: bodies: only valid with method: lattice");
     fixture_expect_one(f, SCENE(ONE "bodys: []\n"), "scene.yaml:5:1: bodys: unknown key");
     fixture_expect_one(f, SCENE(ONE "output: {colour: red}\n"),
-        "scene.yaml:5:10: output.colour: unknown key; there is: every, fields, checkpoint_every");
+        "scene.yaml:5:10: output.colour: unknown key; expected one of: every, fields, "
+        "checkpoint_every");
 }
 
 static void what_is_not_here_yet(void **state)
@@ -88,7 +89,7 @@ static void what_is_not_here_yet(void **state)
             "scene.yaml:5:21: partition.method: graph needs METIS, without which this program was "
             "built; take geometric or interactions");
     fixture_expect_one(f, SCENE(ONE "partition: {boundary: one}\n"),
-        "scene.yaml:5:23: partition.boundary: unknown word 'one'; there is: both, assigned");
+        "scene.yaml:5:23: partition.boundary: unknown word 'one'; expected one of: both, assigned");
 }
 
 /* shape goes with fill, not with file; and one of the two is needed. */
@@ -98,7 +99,7 @@ static void elements_from_nowhere(void **state)
     fixture_scene(f, SCENE(ELEMENTS("velocity: [0, 0, 0]")));
     const char *const message[] = {
         "scene.yaml:4:12: elements[0]: missing key: one of 'fill', 'file'",
-        "scene.yaml:4:35: elements[0].shape: only beside 'fill'",
+        "scene.yaml:4:35: elements[0].shape: only valid with 'fill'",
     };
     fixture_expect(f, NULL, 0, message, 2);
 }
@@ -123,7 +124,7 @@ static void contacts(void **state)
     fixture_expect_one(f, SCENE(MANY "contacts: [{between: [m, mm], " ELASTIC "}]\n"),
         "scene.yaml:5:26: contacts[0].between[1]: unknown material 'mm'; did you mean 'm'?");
     fixture_expect_one(f, SCENE(MANY "contacts: [{between: [m, m], binding: {force: 1}}]\n"),
-        "scene.yaml:5:39: contacts[0].binding: needs 'normal' beside it");
+        "scene.yaml:5:39: contacts[0].binding: requires 'normal'");
     fixture_expect_one(f,
         SCENE(MANY "contacts: [{between: [m, m], normal: {law: linear, stiffness: 1}}]\n"),
         "scene.yaml:5:38: contacts[0].normal: missing key: one of 'damping_ratio', 'restitution'");
@@ -146,7 +147,7 @@ static void contacts(void **state)
     fixture_expect_one(f,
         SCENE(MANY "contacts: [{between: [m, m], " ELASTIC
                    ", rolling: {model: cdt, friction: 1, damping_ratio: 1}}]\n"),
-        "scene.yaml:5:122: contacts[0].rolling.damping_ratio: only beside 'model: epsd'");
+        "scene.yaml:5:122: contacts[0].rolling.damping_ratio: only valid with 'model: epsd'");
 }
 
 static void hertz_needs_moduli(void **state)
@@ -161,7 +162,7 @@ static void hertz_needs_moduli(void **state)
         "scene.yaml:5:44: contacts[0].normal.law: hertz needs 'poisson' of material 'm'",
         "scene.yaml:5:44: contacts[0].normal.law: hertz needs 'young' of material 'w'",
         "scene.yaml:5:44: contacts[0].normal.law: hertz needs 'poisson' of material 'w'",
-        "scene.yaml:5:51: contacts[0].normal.stiffness: only beside 'law: linear'",
+        "scene.yaml:5:51: contacts[0].normal.stiffness: only valid with 'law: linear'",
     };
     fixture_expect(f, NULL, 0, message, 5);
 }
@@ -185,7 +186,7 @@ static void walls_and_regions(void **state)
         "'cylinder', 'stl'");
     fixture_expect_one(f,
         SCENE(ONE WALL("surface: {box: {min: [0, 0, 0], max: [1, 1, 1]}, scale: 1 mm}")),
-        "scene.yaml:5:81: walls[0].surface.scale: only beside 'stl'");
+        "scene.yaml:5:81: walls[0].surface.scale: only valid with 'stl'");
     fixture_expect_one(f,
         SCENE(ONE WALL(
             "surface: {box: {min: [0, 0, 0], max: [1, 1, 1]}}, motion: {appear_at: 2, remove_at: "
@@ -214,7 +215,7 @@ static void names_and_domain(void **state)
 {
     struct fixture *f = *state;
     fixture_expect_one(f, SCENE(ONE "domain: {periodic: [x]}\n"),
-        "scene.yaml:5:20: domain.periodic: needs 'box': what repeats must have an extent");
+        "scene.yaml:5:20: domain.periodic: requires 'box', the extent of the periodic domain");
     fixture_expect_one(f, SCENE(ONE "measure: [{name: a, every: 1, wall_force: gate}]\n"),
         "scene.yaml:5:43: measure[0].wall_force: unknown wall 'gate'");
     fixture_expect_one(f, SCENE(ONE "measure: [{name: a/b, every: 1, energy: all}]\n"),
@@ -244,8 +245,8 @@ static void too_many_steps(void **state)
 static void no_scene_at_all(void **state)
 {
     struct fixture *f = *state;
-    fixture_expect_one(f, "", "scene.yaml:1:1: there is nothing in it");
-    fixture_expect_one(f, "# only a comment\n", "scene.yaml:1:1: there is nothing in it");
+    fixture_expect_one(f, "", "scene.yaml:1:1: the file is empty");
+    fixture_expect_one(f, "# only a comment\n", "scene.yaml:1:1: the file is empty");
     fixture_expect_one(f, "\xef\xbb\xbfhello\n", "scene.yaml:1:1: expected a mapping, found text");
     fixture_expect_one(f, "hello\n", "scene.yaml:1:1: expected a mapping, found text");
     fixture_expect_one(f, "a: 1\nb: \xff\n", "scene.yaml:2:4: not UTF-8 text (byte 0xff)");

@@ -67,7 +67,7 @@ static void one_key(void **state)
     assert_string_equal(text,
         "key        type                  unit   default                 meaning\n"
         "time.step  number                s      auto                    "
-        "time step; auto: safety times the rigorous limit [> 0]\n");
+        "time step; auto: safety factor times the critical time step [> 0]\n");
     free(text);
 }
 
@@ -78,7 +78,7 @@ static void materials_have_names(void **state)
     for (int k = 0; k < 2; k++) {
         char *text = explain(key[k], &stdout, true);
         assert_int_equal(lines(text), 1 + 2); /* one for each method */
-        assert_non_null(strstr(text, "Young's modulus, for law: hertz"));
+        assert_non_null(strstr(text, "Young's modulus, needed by contacts of law: hertz"));
         assert_non_null(strstr(text, "needed (lattice)"));
         free(text);
     }

@@ -131,13 +131,12 @@ static void plate(void **state)
     "method: lattice\n"                                                                            \
     "time: {end: 1}\n"                                                                             \
     "materials: {m: {" material "}}\n"                                                             \
-    "bodies: [{name: b, material: m, cell: 1, "
-"shape: {box: {min: [0, 0, 0], max: [2, 2, 2]}}}]\n" rest
+    "bodies: [{name: b, material: m, cell: 1, "                                                    \
+    "shape: {box: {min: [0, 0, 0], max: [2, 2, 2]}}}]\n" rest
 #define GOOD "density: 1, young: 1, poisson: 0.2"
 #define BOUNDARY(rest) SCENE(GOOD, "boundaries: [{" rest "}]\n")
 
-    static void
-    materials(void **state)
+static void materials(void **state)
 {
     struct fixture *f = *state;
     fixture_expect_one(f, SCENE("density: 1, young: 1, poisson: 0.5", ""),
@@ -147,25 +146,22 @@ static void plate(void **state)
     fixture_expect_one(f, SCENE("density: 1, poisson: 0", ""),
         "scene.yaml:3:16: materials.m: missing key 'young'");
     fixture_expect_one(f, SCENE(GOOD, "lattice: {law: seed}\n"),
-        "scene.yaml:3:48: materials.m.poisson: poisson must be 0: pair springs without volumetric "
-        "term have no other");
+        "scene.yaml:3:48: materials.m.poisson: poisson must be 0: the pair springs of this law, "
+        "without a volumetric term, have no other");
     fixture_expect_one(f, SCENE(GOOD, "partition: {boundary: assigned}\n"),
-        "scene.yaml:5:23: partition.boundary: assigned is for particles: links of a lattice are "
-        "computed by both their cells");
+        "scene.yaml:5:23: partition.boundary: 'assigned' is only valid with method: particles");
     fixture_expect_one(f, SCENE(GOOD ", damping: {ratio: 0.1}", ""),
         "scene.yaml:3:62: materials.m.damping: missing key 'at' (ratio)");
     fixture_expect_one(f, SCENE(GOOD ", damping: {at: 1}", ""),
-        "scene.yaml:3:63: materials.m.damping.at: only beside 'ratio'");
+        "scene.yaml:3:63: materials.m.damping.at: only valid with 'ratio'");
     fixture_expect_one(f, SCENE(GOOD ", damping: {ratio: 0.1, at: 1, mass: 1}", ""),
-        "scene.yaml:3:70: materials.m.damping.ratio: stands in place of 'mass' and 'link', not "
-        "beside them");
+        "scene.yaml:3:70: materials.m.damping.ratio: cannot be combined with 'mass' and 'link'");
     fixture_expect_one(f, SCENE(GOOD ", damping: {link: 1 s}", "time.scheme: x\n"),
         "scene.yaml:5:1: time.scheme: unknown key");
-    const char *const
-        set[] = {"time.scheme=pefrl"},
-        *message =
-            "scene.yaml:3:62: materials.m.damping: this scheme takes no damping of links; leapfrog "
-            "and rk4 do";
+    const char *const set[] = {"time.scheme=pefrl"},
+                      *message =
+                          "scene.yaml:3:62: materials.m.damping: this scheme does not support "
+                          "stiffness-proportional (link) damping; leapfrog and rk4 do";
     fixture_scene(f, SCENE(GOOD ", damping: {link: 1 s}", ""));
     fixture_expect(f, set, 1, &message, 1);
     fixture_scene(f, SCENE(GOOD ", damping: {ratio: 1, at: 1, by: link}", ""));
@@ -185,7 +181,7 @@ static void boundaries(void **state)
     fixture_expect_one(f, BOUNDARY("where: every, fix: [x]"),
         "scene.yaml:5:22: boundaries[0].where: expected a mapping, or 'all', found text");
     fixture_expect_one(f, BOUNDARY("where: {body: c}, fix: [x]"),
-        "scene.yaml:5:29: boundaries[0].where.body: unknown body 'c'; there is: b");
+        "scene.yaml:5:29: boundaries[0].where.body: unknown body 'c'; expected one of: b");
     fixture_expect_one(f, BOUNDARY("where: {box: {min: [1, 0, 0], max: [0, 1, 1]}}, fix: [x]"),
         "scene.yaml:5:28: boundaries[0].where.box: min must not be above max in x");
     fixture_expect_one(f, BOUNDARY("where: all"),
@@ -196,7 +192,8 @@ static void boundaries(void **state)
     fixture_expect_one(f, BOUNDARY("where: all, fix: []"),
         "scene.yaml:5:32: boundaries[0].fix: an empty list fixes nothing");
     fixture_expect_one(f, BOUNDARY("where: all, fix: [x], history: {ramp: 1}"),
-        "scene.yaml:5:46: boundaries[0].history: what is fixed stays so");
+        "scene.yaml:5:46: boundaries[0].history: 'fix' takes no history: a support holds for the "
+        "whole run");
     fixture_expect_one(f, BOUNDARY("where: all, velocity: [free, free, ~]"),
         "scene.yaml:5:14: boundaries[0]: all components are free");
     fixture_expect_one(f, BOUNDARY("where: all, force: [free, 0, 1]"),
@@ -209,7 +206,7 @@ static void tables(void **state)
     struct fixture *f = *state;
     fixture_write(f, "down.csv", "0,1\n-1,2\n", 9);
     fixture_expect_one(f, BOUNDARY("where: all, pressure: 1, history: {table: [[0, 1], [0, 2]]}"),
-        "scene.yaml:5:66: boundaries[0].history.table[1]: times must ascend");
+        "scene.yaml:5:66: boundaries[0].history.table[1]: times must increase");
     fixture_expect_one(f, BOUNDARY("where: all, pressure: 1, history: {table: [[0, 1], 2]}"),
         "scene.yaml:5:66: boundaries[0].history.table[1]: expected [time, factor]");
     fixture_expect_one(f, BOUNDARY("where: all, pressure: 1, history: {table: [[0 m, 1]]}"),
@@ -219,7 +216,7 @@ static void tables(void **state)
         "scene.yaml:5:57: boundaries[0].history.table: expected a list of pairs, or a file, found "
         "an empty list");
     fixture_expect_one(f, BOUNDARY("where: all, pressure: 1, history: {table: down.csv}"),
-        "scene.yaml:5:57: boundaries[0].history.table: down.csv:2: times must ascend");
+        "scene.yaml:5:57: boundaries[0].history.table: down.csv:2: times must increase");
     fixture_expect_one(f, BOUNDARY("where: all, pressure: 1, history: {table: none.csv}"),
         "scene.yaml:5:57: boundaries[0].history.table: cannot read 'none.csv': No such file or "
         "directory");
@@ -233,16 +230,16 @@ static void other_method(void **state)
 {
     struct fixture *f = *state;
     fixture_expect_one(
-        f, SCENE(GOOD, "walls: []\n"), "scene.yaml:5:1: walls: a key of method particles alone");
+        f, SCENE(GOOD, "walls: []\n"), "scene.yaml:5:1: walls: only valid with method: particles");
     fixture_expect_one(f, SCENE(GOOD, "domain: {periodic: [x]}\n"),
-        "scene.yaml:5:1: domain: a key of method particles alone");
+        "scene.yaml:5:1: domain: only valid with method: particles");
     fixture_expect_one(f, SCENE(GOOD, "measure: [{name: n, every: 1, count: {}}]\n"),
-        "scene.yaml:5:31: measure[0].count: a key of method particles alone");
+        "scene.yaml:5:31: measure[0].count: only valid with method: particles");
     fixture_expect_one(f,
         SCENE(GOOD, "measure: [{name: n, every: 1, probe: {element: 1, at: [0, 0, 0]}}]\n"),
-        "scene.yaml:5:39: measure[0].probe.element: a key of method particles alone");
+        "scene.yaml:5:39: measure[0].probe.element: only valid with method: particles");
     fixture_expect_one(f, SCENE(GOOD, "output: {fields: [radius]}\n"),
-        "scene.yaml:5:19: output.fields[0]: unknown field 'radius'; there is: "
+        "scene.yaml:5:19: output.fields[0]: unknown field 'radius'; expected one of: "
         "displacement, rotation, velocity, angular_velocity, stress, von_mises, broken, id, body, "
         "material, owner");
     fixture_scene(f,
@@ -251,10 +248,11 @@ static void other_method(void **state)
         "elements: [{name: e, material: m, shape: {sphere: {diameter: 1}}, fill: {region: {box: "
         "{min: [0, 0, 0], max: [2, 2, 2]}}, count: 1}}]\n"
         "bodies: []\nboundaries: []\n");
-    const char *const all[] = {"scene.yaml:2:24: time.scheme: particles take leapfrog alone",
-        "scene.yaml:3:29: materials.m.damping: a key of method lattice alone",
-        "scene.yaml:5:1: bodies: a key of method lattice alone",
-        "scene.yaml:6:1: boundaries: a key of method lattice alone"};
+    const char *const all[] = {
+        "scene.yaml:2:24: time.scheme: method: particles supports leapfrog only",
+        "scene.yaml:3:29: materials.m.damping: only valid with method: lattice",
+        "scene.yaml:5:1: bodies: only valid with method: lattice",
+        "scene.yaml:6:1: boundaries: only valid with method: lattice"};
     fixture_expect(f, NULL, 0, all, 4);
     fixture_expect_one(f, "method: lattice\ntime: {end: 1}\nmaterials: {m: {" GOOD "}}\n",
         "scene.yaml:1:1: missing key 'bodies'");

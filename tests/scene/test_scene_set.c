@@ -108,9 +108,9 @@ static void messages_name_the_option(void **state)
         "mean 'stiffness'?",
         "--set measure[0].every=[1: measure[0].every: not valid YAML: did not find expected ',' "
         "or ']', while parsing a flow sequence (from line 1)",
-        "--set time.step.x=2: time.step.x: what it would be part of is a single value",
+        "--set time.step.x=2: time.step.x: its parent is a single value, not a mapping",
         "--set domain.box[0]=1: domain.box: the scene does not give this list; set it as a whole",
-        "--set domain[0]=1: domain[0]: what it would be part of is no list",
+        "--set domain[0]=1: domain[0]: its parent is a mapping, not a list",
         "--set gravity[3]=1: gravity[3]: no such entry, there are [0] to [2]",
         "--set partition.method=grpah: partition.method: unknown word 'grpah'; did you mean "
         "'graph'?",

@@ -54,7 +54,7 @@ class Cases(parallel_runs.Case):
     def test_only_leapfrog_goes_there(self):
         run = self.run_scene(self.path("patch"), 1, "--set", "time.scheme=rk4")
         self.assertEqual(run.code, 3, run.err)
-        self.assertIn("time.scheme: lattice.relax takes leapfrog alone", run.err)
+        self.assertIn("time.scheme: lattice.relax supports leapfrog only", run.err)
 
 
 if __name__ == "__main__":

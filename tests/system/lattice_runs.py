@@ -148,11 +148,11 @@ class Lattice(parallel_runs.Case):
         over = plate(1, step=1e-5)
         run = self.run_scene(self.put(over), 2)
         self.assertEqual(run.code, 5)
-        self.assertIn("over its limit", run.err)
+        self.assertIn("exceeds the critical time step", run.err)
         over["time"]["allow_unstable"] = True
         run = self.run_scene(self.put(over), 1, "--steps", "2000")
         self.assertEqual(run.code, 5, run.err)
-        self.assertIn("not numbers any more", run.err)
+        self.assertIn("are not numbers", run.err)
         self.assertIn("of its limit", run.err)
 
 

@@ -186,7 +186,7 @@ class Wrong(Case):
                 with open(self.whole_run.frames()[-1], "wb") as file:
                     file.write(damaged)
                 run = self.resume(self.whole_run.dir, ranks, "--steps", "50")
-                self.assertRegex(run.err, r"\Ademocles: warning: '\S*frame_000003.hdf' cannot be used: .*; the frame before is looked at\n")
+                self.assertRegex(run.err, r"\Ademocles: warning: '\S*frame_000003.hdf' cannot be used: .*; trying the frame before it\n")
                 self.assertEqual(run.err.count("cannot be used"), 1)
                 self.assertEqual((run.record()["digest"], run.record()["resumed"]["step"]), (self.end, 40))
 
@@ -217,7 +217,7 @@ class Wrong(Case):
         self.refused("'\\S*nowhere': No such file", folder="/nowhere")
         empty = os.path.join(self.dir, "empty")
         os.mkdir(empty)
-        self.refused("holds no frame", folder=empty)
+        self.refused("contains no frame", folder=empty)
         csv, content = os.path.join(self.dir, "few.csv"), robust_jobs.bed(frame_every=20)
         content["elements"] = [{"name": "few", "material": "glass", "file": "few.csv"}]
         for radius in ("0.002", "0.0021"):
@@ -236,7 +236,7 @@ class Wrong(Case):
         self.refused("step 50, the run is to end with step 49", "--steps", "49", code=2)
         self.refused("step 50", "--set", "time.end=2e-4")
         self.refused("energy.csv' has other columns", "--set", "measure[0]={name: energy, every: 1e-4, momentum: all}")
-        self.refused("orientation cannot begin", "--set", "output.fields=[orientation]")
+        self.refused("orientation cannot be added to a restarted run", "--set", "output.fields=[orientation]")
 
     def test_what_can_change(self):
         """More measures, other frames, another end, where files are; the bits stay."""
