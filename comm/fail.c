@@ -17,7 +17,8 @@ static int world_rank(void)
     return rank;
 }
 
-/* One line in one write, so that mpirun cannot put the output of another rank between its pieces. */
+/* One line in one write, so that mpirun cannot put the output of another rank between its
+ * pieces. */
 static void print_line(const char *kind, int rank, const char *format, va_list args)
 {
     char text[4096], of_rank[32] = "";

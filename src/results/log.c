@@ -24,9 +24,9 @@ struct log {
     bool is_begun;      /* progress */
     /* [s] clock at the first call, and when a line was last shown */
     double begun, last;
-    int64_t step_last, tenth;             /* tenth: of the run, already announced */
-    double rate;                          /* [steps/s], smoothed; 0: not known yet */
-    const char *element;                  /* what is counted: "particle" */
+    int64_t step_last, tenth; /* tenth: of the run, already announced */
+    double rate;              /* [steps/s], smoothed; 0: not known yet */
+    const char *element;      /* what is counted: "particle" */
 };
 
 /* Open MPI gives each rank a pseudo-terminal, wherever its own output goes: under mpirun that of
@@ -190,7 +190,7 @@ static char *place_text(const struct log_progress *p)
 static char *progress_text(const struct log *log, const struct log_progress *p)
 {
     char duration[LOG_DURATION_SIZE], *place = place_text(p),
-        *rate = log_rate(log, log->rate * (double)p->n_element);
+                                      *rate = log_rate(log, log->rate * (double)p->n_element);
     log_duration((double)(p->n_step - p->step) / log->rate, duration);
     char *text = fail_format("%s  %s  %s left", place, rate, duration);
     free(place);

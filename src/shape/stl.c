@@ -123,7 +123,8 @@ static char *read_ascii(const char *path, const char *text, struct soup *soup)
             n_corner++;
         } else if (is_word(at, length, "endloop")) {
             if (n_corner != 3)
-                return fail_format("%s:%d: a triangle has %d of its 3 corners", path, line, n_corner);
+                return fail_format(
+                    "%s:%d: a triangle has %d of its 3 corners", path, line, n_corner);
             memcpy(soup_add(soup), corner, sizeof corner);
             n_corner = 0;
         } else if (is_word(at, length, "endsolid") || is_word(at, length, "solid")) {

@@ -24,7 +24,8 @@ class Plate(cli.Case):
         # 160 x 160 x 2 cells; a link is missing at each upper face of the body
         self.assertIn(f"\ncells: 51200, links: {2 * 159 * 160 * 2 + 160 * 160}\n", text)
         # 80 x 2 cells of the last column; 4 x 4 x 2 at the corner
-        self.assertIn("\nboundaries: 2; cells that are constrained or prescribed: 160; cells that are loaded or prescribed: 32, with distinct sets of loads: 8\n", text)
+        self.assertIn("\nboundaries: 2; cells that are constrained or prescribed: 160; "
+                      "cells that are loaded or prescribed: 32, with distinct sets of loads: 8\n", text)
         self.assertIn(f" {7900 * 0.8 * 0.8 * 0.01:.4g} kg", text)
         limit = 2 * math.sqrt(2) / math.sqrt(28 * 210e9 / (2 * 1.28) / 7900) * 5e-3
         self.assertAlmostEqual(self.limit(text) / limit, 1, 3)

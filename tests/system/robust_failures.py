@@ -37,7 +37,8 @@ class Numerics(Failures):
         fall["measure"] = []  # the budget of energy would find it first
         for ranks in (1, 3):
             for scene, when in ((pair, r"0, t = 0 s"), (fall, r"[1-9]\d*, t = \S+ s")):
-                run = self.fails(self.put(scene), ranks, 5, r"step " + when + r": the time step 0\.000[56] s exceeds the critical time step .* element \d+")
+                run = self.fails(self.put(scene), ranks, 5, r"step " + when +
+                                 r": the time step 0\.000[56] s exceeds the critical time step .* element \d+")
                 record = self.failed_record(run, 5)
                 self.assertGreater(record["dt"], record["dt_limit"])
                 self.whole(run.dir)

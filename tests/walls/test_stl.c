@@ -81,8 +81,8 @@ static void test_refused(void **unused)
         ":5: '0x' is not a finite number");
     refuse_text("solid s\n" FACET("0 0 0", "1 0 0", "0 1 0\nvertex 3 3 3") "endsolid\n",
         ":7: more than three corners in a triangle");
-    refuse_text(
-        "solid s\nouter loop\nvertex 0 0 0\nendloop\nendsolid\n", ":4: a triangle has 1 of its 3 corners");
+    refuse_text("solid s\nouter loop\nvertex 0 0 0\nendloop\nendsolid\n",
+        ":4: a triangle has 1 of its 3 corners");
     refuse_text("solid s\nfacte normal\nendsolid\n", ":2: 'facte' is not a keyword of STL");
     refuse_text("solid s\n" FACET("0 0 0", "1 0 0", "2 0 0") "endsolid\n",
         ": all triangles have zero area (1)");
