@@ -167,72 +167,110 @@ LAW struct link_cell lattice_advance(int mixed, struct link_cell c, struct link_
 }
 #endif
 
-/* One cell of the run. */
-#if WITH_ENERGY && WITH_RK
-#define ACCOUNT(mixed, kind)                                                                       \
-    link_account_stage(pull.effort, c, pull.a, pull.b, (mixed) ? word_i : 0,                       \
-        cell + (kind)*CELL_WIDTH, stage, speed, sum_v + LATTICE_V * s.plane, ledger, s.plane, i)
-#elif WITH_ENERGY
-#define ACCOUNT(mixed, kind)                                                                       \
-    link_account_kicks(pull.effort, c, pull.a, pull.b, (mixed) ? word_i : 0,                       \
-        cell + (kind)*CELL_WIDTH, kick + (kind)*KICK_WIDTH, count, ledger, s.plane, i)
-#else
-#define ACCOUNT(mixed, kind)
+/* What each cell of a run needs of the kernel's arguments. Members of features that are off are
+ * not set. */
+struct link_pass {
+    struct lattice_view s;  /* the run, in the state that the forces are of */
+    __global preal *x, *x0; /* planes that are written; of the step's start, Runge-Kutta's alone */
+    __global real *v, *v0;
+    __global const real *cell; /* table of CELL_WIDTH */
+    __global const int *row;   /* [cells] of the table of loads; WITH_LOADS */
+    __global const real *rows;
+    vec3 gravity;
+#if WITH_ENERGY
+    __global double *ledger;
 #endif
 #if WITH_RK
-#define NEXT(mixed, kind)                                                                          \
-    struct lattice_view s0 = s;                                                                    \
-    s0.x = x + start_x;                                                                            \
-    s0.v = v + start_v;                                                                            \
-    struct link_cell start = lattice_moving(s0, i, lattice_cell(s0, i));                           \
-    struct lattice_sums sum = lattice_sums_of(sum_x, sum_v, s.plane, i, stage.is_first);           \
-    c = lattice_advance(mixed, c, start, pull, word_i, cell[(kind)*CELL_WIDTH + 6], stage, &sum);  \
-    lattice_sums_keep(sum_x, sum_v, s.plane, i, sum)
-#else
-#define NEXT(mixed, kind) c = lattice_move(mixed, c, pull, word_i, kick + (kind)*KICK_WIDTH, drift)
+    __global preal *sum_x;
+    __global real *sum_v;
+    struct lattice_stage stage;
+#if WITH_ENERGY
+    struct lattice_speed speed;
 #endif
-#if WITH_LOADS
-#define ROWS row, rows + at_rows
 #else
-#define ROWS 0, 0
+    __global const real *kick; /* table of KICK_WIDTH */
+    preal drift;
+    int count;
 #endif
-#define AHEAD_X(p, n) lattice_fetch((p) + at, sizeof(preal), s.plane, n)
-#define AHEAD_V(p) lattice_fetch((p) + at, sizeof(real), s.plane, LATTICE_V)
+};
+
+#if WITH_ENERGY
+/* What acted on cell i goes into the ledger. kind: of the cell, row of the tables. */
+LAW void link_account(int mixed, struct link_pass p, struct link_cell c, struct lattice_pull pull,
+    int word, int kind, size_t i)
+{
+    __global const real *cell = p.cell + kind * CELL_WIDTH;
 #if WITH_RK
-#define AHEAD_SUMS                                                                                 \
-    do {                                                                                           \
-        AHEAD_X(x + start_x, LATTICE_X(WITH_TURN));                                                \
-        AHEAD_V(v + start_v);                                                                      \
-        AHEAD_V(v + v_out);                                                                        \
-        AHEAD_X(sum_x, WITH_TURN ? 9 : 6);                                                         \
-        AHEAD_V(sum_v);                                                                            \
-    } while (0)
+    link_account_stage(pull.effort, c, pull.a, pull.b, mixed ? word : 0, cell, p.stage, p.speed,
+        p.sum_v + LATTICE_V * p.s.plane, p.ledger, p.s.plane, i);
 #else
-#define AHEAD_SUMS
+    link_account_kicks(pull.effort, c, pull.a, pull.b, mixed ? word : 0, cell,
+        p.kick + kind * KICK_WIDTH, p.count, p.ledger, p.s.plane, i);
 #endif
-#define AHEAD(piece)                                                                               \
-    do {                                                                                           \
-        size_t ahead = (piece) + PIECES_AHEAD * BATCH_WIDTH, at = s.begin + ahead;                 \
-        lattice_fetch(s.x + s.base[3] + ahead, sizeof(preal), s.plane, LATTICE_X(WITH_TURN));      \
-        AHEAD_V(s.v);                                                                              \
-        AHEAD_X(x + x_out, LATTICE_X(WITH_TURN));                                                  \
-        AHEAD_SUMS;                                                                                \
-    } while (0)
-#define RUN(mixed, kind)                                                                           \
-    FOR_PIECES (piece) {                                                                           \
-        AHEAD(piece);                                                                              \
-        BATCH_VECTOR                                                                               \
-        FOR_PIECE (l, piece) {                                                                     \
-            size_t i = s.begin + l;                                                                \
-            int word_i = word[i];                                                                  \
-            struct link_cell c = lattice_moving(s, i, lattice_cell(s, i));                         \
-            struct lattice_pull pull =                                                             \
-                lattice_pull_of(mixed, s, l, word_i, c, cell + (kind)*CELL_WIDTH, ROWS, gravity);  \
-            ACCOUNT(mixed, kind);                                                                  \
-            NEXT(mixed, kind);                                                                     \
-            lattice_keep(x + x_out, v + v_out, s.plane, i, c);                                     \
-        }                                                                                          \
+}
+#endif
+
+/* Cell i after this evaluation. */
+LAW struct link_cell link_next(int mixed, struct link_pass p, struct link_cell c,
+    struct lattice_pull pull, int word, int kind, size_t i)
+{
+#if WITH_RK
+    struct lattice_view s0 = p.s;
+    s0.x = p.x0;
+    s0.v = p.v0;
+    struct link_cell start = lattice_moving(s0, i, lattice_cell(s0, i));
+    struct lattice_sums sum = lattice_sums_of(p.sum_x, p.sum_v, p.s.plane, i, p.stage.is_first);
+    real alpha = p.cell[kind * CELL_WIDTH + 6];
+    c = lattice_advance(mixed, c, start, pull, word, alpha, p.stage, &sum);
+    lattice_sums_keep(p.sum_x, p.sum_v, p.s.plane, i, sum);
+#else
+    (void)i;
+    c = lattice_move(mixed, c, pull, word, p.kick + kind * KICK_WIDTH, p.drift);
+#endif
+    return c;
+}
+
+/* Fetches what a later piece of the run reads and writes. */
+LAW void link_fetch(struct link_pass p, size_t piece)
+{
+    size_t ahead = piece + PIECES_AHEAD * BATCH_WIDTH, at = p.s.begin + ahead, plane = p.s.plane;
+    int n_x = LATTICE_X(WITH_TURN);
+    lattice_fetch(p.s.x + p.s.base[3] + ahead, sizeof(preal), plane, n_x);
+    lattice_fetch(p.s.v + at, sizeof(real), plane, LATTICE_V);
+    lattice_fetch(p.x + at, sizeof(preal), plane, n_x);
+#if WITH_RK
+    lattice_fetch(p.x0 + at, sizeof(preal), plane, n_x);
+    lattice_fetch(p.v0 + at, sizeof(real), plane, LATTICE_V);
+    lattice_fetch(p.v + at, sizeof(real), plane, LATTICE_V);
+    lattice_fetch(p.sum_x + at, sizeof(preal), plane, WITH_TURN ? 9 : 6);
+    lattice_fetch(p.sum_v + at, sizeof(real), plane, LATTICE_V);
+#endif
+}
+
+/* Cell l of the run. mixed: a constant, 1 where kinds, loads or fixed DOF differ within the run;
+ * kind: of all its cells where it is 0. */
+LAW void link_step(int mixed, struct link_pass p, int kind, size_t l)
+{
+    size_t i = p.s.begin + l;
+    int word = p.s.word[i], own = mixed ? LATTICE_KIND(word) : kind;
+    struct link_cell c = lattice_moving(p.s, i, lattice_cell(p.s, i));
+    struct lattice_pull pull = lattice_pull_of(
+        mixed, p.s, l, word, c, p.cell + own * CELL_WIDTH, p.row, p.rows, p.gravity);
+#if WITH_ENERGY
+    link_account(mixed, p, c, pull, word, own, i);
+#endif
+    c = link_next(mixed, p, c, pull, word, own, i);
+    lattice_keep(p.x, p.v, p.s.plane, i, c);
+}
+
+LAW void link_run(int mixed, struct link_pass p, int kind)
+{
+    FOR_PIECES (piece) {
+        link_fetch(p, piece);
+        BATCH_VECTOR
+        FOR_PIECE (l, piece) link_step(mixed, p, kind, l);
     }
+}
 
 /* Runs list[first] to list[first + n - 1]. info: of runs (RUN_MIXED). x_in, x_out, v_in, v_out:
  * first numbers of sets of planes. */
@@ -269,30 +307,49 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void link_forc
 {
     if (get_group_id(0) >= (size_t)n) return;
     int run = list[first + get_group_id(0)], what = info[run];
-    struct lattice_view s = lattice_view_of(x + x_in, v + v_in, word, link, base, run, n_run,
-        n_kind, what & (RUN_MIXED - 1), (size_t)plane);
-    vec3 gravity = v3(0, 0, 0);
+    struct link_pass pass;
+    pass.s = lattice_view_of(x + x_in, v + v_in, word, link, base, run, n_run, n_kind,
+        what & (RUN_MIXED - 1), (size_t)plane);
+    pass.x = x + x_out;
+    pass.v = v + v_out;
+    pass.cell = cell;
+    pass.gravity = v3(0, 0, 0);
+    pass.row = 0;
+    pass.rows = 0;
 #if WITH_VOLUME
-    s.p = p;
+    pass.s.p = p;
 #endif
 #if WITH_GRAVITY
-    gravity = v3(gravity_x, gravity_y, gravity_z);
+    pass.gravity = v3(gravity_x, gravity_y, gravity_z);
+#endif
+#if WITH_LOADS
+    pass.row = row;
+    pass.rows = rows + at_rows;
+#endif
+#if WITH_ENERGY
+    pass.ledger = ledger;
 #endif
 #if WITH_RK
     struct lattice_stage stage = {c_sum_v, c_sum_a, c_next_v, c_next_a, c_next_turn, c_sum_turn,
         c_sum_k, c_next_k, is_first, is_last, WITH_NYSTROM};
+    pass.stage = stage;
+    pass.x0 = x + start_x;
+    pass.v0 = v + start_v;
+    pass.sum_x = sum_x;
+    pass.sum_v = sum_v;
 #if WITH_ENERGY
-    struct lattice_speed speed = {c_before, c_own};
+    pass.speed.before = c_before;
+    pass.speed.own = c_own;
 #endif
 #else
-    __global const real *kick = kick_table + at_kick;
+    pass.kick = kick_table + at_kick;
+    pass.drift = drift;
+#if WITH_ENERGY
+    pass.count = count;
 #endif
-    if ((WITH_KINDS || WITH_FIX || WITH_LOADS) && what >= RUN_MIXED) {
-        RUN(1, LATTICE_KIND(word_i))
-    } else {
-        int kind = what & (RUN_MIXED - 1);
-        RUN(0, kind)
-    }
+#endif
+    if ((WITH_KINDS || WITH_FIX || WITH_LOADS) && what >= RUN_MIXED) link_run(1, pass, 0);
+    else link_run(0, pass, what & (RUN_MIXED - 1));
 }
 
 #if !WITH_RK
