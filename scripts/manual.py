@@ -124,4 +124,5 @@ complete -F _democles democles
 
 
 MAKERS = {"program": program_page, "scene": scene_page, "tools": tools_page, "completion": completion}
-print(MAKERS[sys.argv[1]](Description(pathlib.Path(sys.argv[2]).read_text())), end="")
+if __name__ == "__main__":
+    print(MAKERS[sys.argv[1]](Description(pathlib.Path(sys.argv[2]).read_text())), end="")
