@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "comm/fail.h"
+#include "lattice_fields.h"
 #include "lattice_restore.h"
 #include "run/resume.h"
 #include "results/snapshot.h"
@@ -61,7 +62,7 @@ void lattice_state_free(struct lattice_state *t)
 {
     if (!t) return;
     void *own[] = {t->centre, t->u, t->turn, t->v, t->w, t->stress, t->von_mises, t->links, t->fate,
-        t->broken, t};
+        t->broken, t->v_before, t->w_before, t->ledger, t->fresh, t->released, t};
     for (size_t k = 0; k < sizeof own / sizeof *own; k++) free(own[k]);
 }
 
@@ -103,50 +104,6 @@ static void corners(
     }
 }
 
-/* By cell, for the picture: integers that do not change. */
-static int32_t *integers(const struct sim *s, const struct lattice_state *t, const char *name)
-{
-    const struct lattice_cells *c = s->lattice->cells;
-    int32_t *value = fail_alloc((size_t)t->n * sizeof *value);
-    for (int64_t i = 0; i < t->n; i++) {
-        int64_t g = t->gid[i];
-        value[i] = !strcmp(name, "body")    ? c->body[g]
-                   : !strcmp(name, "owner") ? s->comm->rank
-                                            : c->kind[c->kind_of[g]].material;
-    }
-    return value;
-}
-
-static void shown_fields(const struct sim *s, const struct lattice_state *t, struct sheet *f)
-{
-    for (int k = 0; k < s->scene->output.n_field; k++) {
-        const char *name = s->scene->output.field[k];
-        if (!strcmp(name, "displacement")) continue; /* by corner */
-        if (!strcmp(name, "velocity"))
-            sheet_add(f, "velocity", "m/s", "velocity of the centre", COLUMN_F64, 3, t->v);
-        else if (!strcmp(name, "angular_velocity"))
-            sheet_add(f, "angular_velocity", "rad/s", "angular velocity", COLUMN_F64, 3, t->w);
-        else if (!strcmp(name, "rotation"))
-            sheet_add(f, "rotation", t->turn_width == 4 ? "1" : "rad",
-                t->turn_width == 4 ? "quaternion w, x, y, z"
-                                   : "small rotation about x, y, z, and 0",
-                COLUMN_F64, 4, t->turn);
-        else if (!strcmp(name, "id")) sheet_add(f, "id", "1", "global id", COLUMN_I64, 1, t->gid);
-        else if (!strcmp(name, "stress"))
-            sheet_add(f, "stress", "Pa", "stress in the world's axes, rows of the tensor",
-                COLUMN_F64, 9, t->stress);
-        else if (!strcmp(name, "von_mises"))
-            sheet_add(
-                f, "von_mises", "Pa", "von Mises' equivalent stress", COLUMN_F64, 1, t->von_mises);
-        else if (!strcmp(name, "broken"))
-            sheet_add(f, "broken", "1", "links that the cell has lost", COLUMN_I32, 1, t->broken);
-        else {
-            sheet_add(f, name, "1", "index in the scene; owner: rank", COLUMN_I32, 1,
-                sheet_keep(f, integers(s, t, name)));
-        }
-    }
-}
-
 void lattice_method_frame(struct sim *s, int64_t index)
 {
     struct lattice_state *t = lattice_state_create(s);
@@ -158,22 +115,9 @@ void lattice_method_frame(struct sim *s, int64_t index)
     const struct column point[] = {
         {"position", "m", "corners of the cells at the start", COLUMN_F64, 3, x},
         {"displacement", "m", "displacement of the corners", COLUMN_F64, 3, u}};
-    shown_fields(s, t, &shown);
-    sheet_add(&state, "id", "1", "global id", COLUMN_I64, 1, t->gid);
-    sheet_add(&state, "displacement", "m", "displacement of the centre", COLUMN_F64, 3, t->u);
-    sheet_add(&state, "rotation", t->turn_width == 4 ? "1" : "rad",
-        "quaternion w, x, y, z, or a small rotation and 0", COLUMN_F64, 4, t->turn);
-    sheet_add(&state, "velocity", "m/s", "velocity of the centre", COLUMN_F64, 3, t->v);
-    sheet_add(&state, "angular_velocity", "rad/s", "angular velocity", COLUMN_F64, 3, t->w);
-    if (t->links) {
-        sheet_add(&state, "links", "1", "links left, a bit for each of -x, +x, -y, +y, -z, +z",
-            COLUMN_I32, 1, t->links);
-        sheet_add(&state, "fate", "1",
-            "how links at upper faces broke, three bits for each of x, y, z: tension 1, shear 2, "
-            "bending 3, twist 4",
-            COLUMN_I32, 1, t->fate);
-    }
-    lattice_restore_columns(s, &state);
+    lattice_fields_show(s, &shown, t);
+    lattice_restore_take(s, t);
+    lattice_fields_state(s, &state, t);
     struct table table[2] = {{"cells", t->n, state.column, state.n}};
     double *total = sheet_keep(&state, lattice_restore_totals(s));
     const struct column column = {"number", "1",

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "comm/fail.h"
+#include "lattice_fields.h"
 #include "lattice_frequency.h"
 #include "lattice_restore.h"
 #include "run/output.h"
@@ -25,8 +26,7 @@ static bool is_listed(char *const *list, int n, const char *word)
 
 static bool wants_stress(const struct scene *scene)
 {
-    bool wants = is_listed(scene->output.field, scene->output.n_field, "stress") ||
-                 is_listed(scene->output.field, scene->output.n_field, "von_mises");
+    bool wants = lattice_fields_need_stress(scene->output.field, scene->output.n_field);
     for (int m = 0; m < scene->n_measure; m++)
         wants |= scene->measure[m].kind == MEASURE_STRESS_MAX;
     return wants;

@@ -34,6 +34,11 @@ struct lattice_state {
     double (*stress)[9], *von_mises;
     /* lattice_break.h, NULL where nothing breaks; how many links it has lost */
     int32_t *links, *fate, *broken;
+    /* what lattice_restore_take adds for a frame: lattice_read_before, the rows of the ledger
+     * [LATTICE_LEDGER] [J], lattice_break_read_release; NULL where the run does not have it */
+    double (*v_before)[3], (*w_before)[3], *ledger;
+    int32_t *fresh;
+    double *released;
     /* 4: turn is a quaternion w, x, y, z; 3: a small rotation [rad], the fourth is 0 */
     int turn_width;
 };

@@ -3,17 +3,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "lattice_fields.h"
 #include "kernels/lattice/lattice_words.h"
 #include "results/digest.h"
 #include "comm/fail.h"
-#include "results/frame_table.h"
 #include "results/h5_check.h"
 #include "run/resume.h"
-
-static bool has_before(const struct lattice *l)
-{
-    return l->scheme->ends_with_kick;
-}
 
 static double *read_ledger(const struct lattice *l)
 {
@@ -27,29 +22,22 @@ static double *read_ledger(const struct lattice *l)
     return ledger;
 }
 
-void lattice_restore_columns(struct sim *s, struct sheet *t)
+void lattice_restore_take(const struct sim *s, struct lattice_state *state)
 {
     const struct lattice *l = s->lattice->lattice;
-    size_t n = (size_t)l->layout->n_owned;
-    if (has_before(l)) {
-        struct lattice_motion m = {.v = sheet_keep(t, fail_alloc(n * sizeof *m.v)),
-            .w = sheet_keep(t, fail_alloc(n * sizeof *m.w))};
+    size_t n = (size_t)state->n;
+    if (l->scheme->ends_with_kick) {
+        state->v_before = fail_alloc(n * sizeof *state->v_before);
+        state->w_before = fail_alloc(n * sizeof *state->w_before);
+        struct lattice_motion m = {.v = state->v_before, .w = state->w_before};
         lattice_read_before(l, &m);
-        sheet_add(
-            t, "velocity_before", "m/s", "before the kick that ends the step", COLUMN_F64, 3, m.v);
-        sheet_add(t, "angular_velocity_before", "rad/s", "likewise", COLUMN_F64, 3, m.w);
     }
     if (!l->features.energy) return;
-    sheet_add(t, "ledger", "J", "see kernels/lattice/lattice_work.h", COLUMN_F64, LATTICE_LEDGER,
-        sheet_keep(t, read_ledger(l)));
+    state->ledger = read_ledger(l);
     if (!l->breakage) return;
-    int32_t *fresh = sheet_keep(t, fail_alloc(n * sizeof *fresh));
-    double *released = sheet_keep(t, fail_alloc(n * sizeof *released));
-    lattice_break_read_release(l->breakage, fresh, released);
-    sheet_add(t, "fresh", "1",
-        "links that went with the last step, see kernels/lattice/link_release.cl", COLUMN_I32, 1,
-        fresh);
-    sheet_add(t, "released", "J", "by links that broke", COLUMN_F64, 1, released);
+    state->fresh = fail_alloc(n * sizeof *state->fresh);
+    state->released = fail_alloc(n * sizeof *state->released);
+    lattice_break_read_release(l->breakage, state->fresh, state->released);
 }
 
 /* The numbers of the table `totals`, in this order. */
@@ -106,32 +94,6 @@ bool lattice_restore_energy(const struct sim *s, bool asked)
     return has;
 }
 
-/* Columns of the frame's cells, of this rank's share. */
-static struct frame_table read_cells(const struct sim *s)
-{
-    const struct lattice *l = s->lattice->lattice;
-    const struct h5_reader *reader = s->from->reader;
-    bool before = has_before(l), energy = l->features.energy, breakage = l->breakage != NULL;
-    const struct {
-        const char *name;
-        enum column_type type;
-        int width;
-        bool there;
-    } column[] = {{"id", COLUMN_I64, 1, true}, {"displacement", COLUMN_F64, 3, true},
-        {"rotation", COLUMN_F64, 4, true}, {"velocity", COLUMN_F64, 3, true},
-        {"angular_velocity", COLUMN_F64, 3, true}, {"links", COLUMN_I32, 1, breakage},
-        {"fate", COLUMN_I32, 1, breakage}, {"velocity_before", COLUMN_F64, 3, before},
-        {"angular_velocity_before", COLUMN_F64, 3, before},
-        {"ledger", COLUMN_F64, LATTICE_LEDGER, energy},
-        {"fresh", COLUMN_I32, 1, energy && breakage},
-        {"released", COLUMN_F64, 1, energy && breakage}};
-    struct frame_table t = frame_table_begin(s->comm, reader, "cells", "id");
-    for (size_t k = 0; k < sizeof column / sizeof *column; k++)
-        if (column[k].there)
-            frame_table_add(&t, s->comm, reader, column[k].name, column[k].type, column[k].width);
-    return t;
-}
-
 static int64_t place_of(const struct lattice_layout *c, int64_t gid)
 {
     int64_t low = 0, high = c->n_owned;
@@ -163,45 +125,36 @@ static void sort_rows(struct frame_table *t, const struct lattice_layout *c, con
 }
 
 /* Small rotations lie in rows of four. */
-static void write_motion(struct sim *s, const struct frame_table *t)
+static void write_motion(struct sim *s, const struct lattice_state *t)
 {
-    struct lattice *l = s->lattice->lattice;
-    double(*turn)[4] = frame_table_get(t, "rotation"),
-    (*theta)[3] = fail_alloc((size_t)t->n * sizeof *theta);
-    for (int64_t i = 0; i < t->n; i++) memcpy(theta[i], turn[i], sizeof *theta);
-    struct lattice_motion m = {.u = frame_table_get(t, "displacement"),
-        .theta = theta,
-        .q = turn,
-        .v = frame_table_get(t, "velocity"),
-        .w = frame_table_get(t, "angular_velocity")};
-    struct lattice_motion before = {.v = frame_table_get(t, "velocity_before"),
-        .w = frame_table_get(t, "angular_velocity_before")};
-    lattice_write_observed(l, s->from->step, &m, &before);
+    double(*theta)[3] = fail_alloc((size_t)t->n * sizeof *theta);
+    for (int64_t i = 0; i < t->n; i++) memcpy(theta[i], t->turn[i], sizeof *theta);
+    struct lattice_motion m = {.u = t->u, .theta = theta, .q = t->turn, .v = t->v, .w = t->w},
+                          before = {.v = t->v_before, .w = t->w_before};
+    lattice_write_observed(s->lattice->lattice, s->from->step, &m, &before);
     free(theta);
 }
 
 void lattice_restore_cells(struct sim *s)
 {
     struct lattice *l = s->lattice->lattice;
-    struct frame_table t = read_cells(s);
+    struct frame_table table = frame_table_begin(s->comm, s->from->reader, "cells", "id");
+    lattice_fields_read(s, &table);
     int32_t *owner = frame_table_owners(s->comm, l->layout->gid, l->layout->n_owned, s->n_first),
-            *to = fail_alloc((size_t)t.n * sizeof *to);
-    const int64_t *id = frame_table_get(&t, "id");
-    for (int64_t i = 0; i < t.n; i++) to[i] = owner[id[i]];
-    frame_table_send(&t, s->comm, to, 1);
+            *to = fail_alloc((size_t)table.n * sizeof *to);
+    const int64_t *id = lattice_fields_rows(s, &table).gid;
+    for (int64_t i = 0; i < table.n; i++) to[i] = owner[id[i]];
+    frame_table_send(&table, s->comm, to, 1);
     free(to);
     free(owner);
-    sort_rows(&t, l->layout, s->from->path);
+    sort_rows(&table, l->layout, s->from->path);
+    struct lattice_state t = lattice_fields_rows(s, &table);
     write_motion(s, &t);
-    if (l->breakage)
-        lattice_break_write(l->breakage, frame_table_get(&t, "links"), frame_table_get(&t, "fate"));
-    const double *ledger = frame_table_get(&t, "ledger");
-    for (int k = 0; k < LATTICE_LEDGER && ledger; k++)
-        lattice_write_plane(l, &l->ledger, false, k, ledger + k, LATTICE_LEDGER);
-    if (l->breakage && ledger)
-        lattice_break_write_release(
-            l->breakage, frame_table_get(&t, "fresh"), frame_table_get(&t, "released"));
-    frame_table_free(&t);
+    if (l->breakage) lattice_break_write(l->breakage, t.links, t.fate);
+    for (int k = 0; k < LATTICE_LEDGER && t.ledger; k++)
+        lattice_write_plane(l, &l->ledger, false, k, t.ledger + k, LATTICE_LEDGER);
+    if (t.fresh) lattice_break_write_release(l->breakage, t.fresh, t.released);
+    frame_table_free(&table);
 }
 
 void lattice_restore_run(struct sim *s)

@@ -4,15 +4,14 @@
 #define DEMOCLES_LATTICE_RESTORE_H
 
 #include "lattice_method.h"
-#include "results/sheet.h"
 
 enum {
     LATTICE_RESTORE_TOTALS = sizeof(struct lattice_energy) / sizeof(double) +
                              LATTICE_ENERGY_OPENED + LATTICE_RELAX_NOTES + 4
 };
 
-/* Adds what the next step depends on to the table of cells; rows in ascending id. */
-void lattice_restore_columns(struct sim *s, struct sheet *sheet);
+/* Adds what the next step depends on, besides the motion and the links, to the cells of now. */
+void lattice_restore_take(const struct sim *s, struct lattice_state *state);
 /* [LATTICE_RESTORE_TOTALS] of the run as a whole, the same on all ranks; the caller frees. */
 double *lattice_restore_totals(const struct sim *s);
 

@@ -9,26 +9,15 @@
 
 #include "energy.h"
 #include "comm/fail.h"
-#include "results/frame_table.h"
 #include "particle_contacts.h"
+#include "particle_fields.h"
 #include "run/resume.h"
 
 /* This rank's share of the elements, in the frame's order. */
 static struct frame_table read_elements(struct sim *s)
 {
-    struct particle_run *run = s->particle;
-    const struct h5_reader *reader = s->from->reader;
-    struct frame_table t = frame_table_begin(s->comm, reader, "elements", "id");
-    static const struct {
-        const char *name;
-        int width;
-    } real[] = {{"position", 3}, {"velocity", 3}, {"angular_velocity", 3}, {"force", 3},
-        {"reference", 4}, {"reach", 1}, {"orientation", 4}, {"torque", 3}};
-    const bool there[] = {
-        true, true, true, true, true, true, run->features.orientation, run->features.spin};
-    frame_table_add(&t, s->comm, reader, "id", COLUMN_I64, 1);
-    for (size_t k = 0; k < sizeof real / sizeof *real; k++)
-        if (there[k]) frame_table_add(&t, s->comm, reader, real[k].name, COLUMN_F64, real[k].width);
+    struct frame_table t = frame_table_begin(s->comm, s->from->reader, "elements", "id");
+    particle_fields_read(s, &t);
     return t;
 }
 
@@ -52,38 +41,13 @@ static void send(struct sim *s, struct frame_table *t)
     free(to);
 }
 
-static struct particles_host *host_of(struct sim *s, const struct frame_table *t)
-{
-    struct particle_run *run = s->particle;
-    struct particles_host *h = particles_host_create(t->n);
-    size_t n = (size_t)t->n;
-    memcpy(h->gid, frame_table_get(t, "id"), n * sizeof *h->gid);
-    memcpy(h->x, frame_table_get(t, "position"), 3 * n * sizeof *h->x);
-    memcpy(h->v, frame_table_get(t, "velocity"), 3 * n * sizeof *h->v);
-    memcpy(h->w, frame_table_get(t, "angular_velocity"), 3 * n * sizeof *h->w);
-    if (run->features.orientation)
-        memcpy(h->q, frame_table_get(t, "orientation"), 4 * n * sizeof *h->q);
-    for (int64_t i = 0; i < t->n; i++) particles_host_kind(h, i, s->scene, run->first);
-    return h;
-}
-
-/* [n][3] to padded vectors on the device. */
-static void write_vectors(struct sim *s, struct buffer *buffer, const double *three, int64_t n)
-{
-    double *four = fail_alloc(4 * (size_t)n * sizeof *four);
-    for (int64_t i = 0; i < n; i++) memcpy(four + 4 * i, three + 3 * i, 3 * sizeof *four);
-    particles_write(s->dev, buffer, s->particle->features.real_is_float, 0, 4 * (size_t)n, four);
-    free(four);
-}
-
 /* Elements at their places of the last build, lists around them, then all as it is at the frame's
  * step. */
 static void place(struct sim *s, const struct frame_table *t)
 {
     struct particle_run *run = s->particle;
     struct particles *p = run->particles;
-    struct particles_host *h = host_of(s, t);
-    bool f = run->features.position_is_float;
+    struct particles_host *h = particle_fields_host(s, t);
     size_t n = (size_t)t->n;
     double *now = h->x;
     const double *reference = frame_table_get(t, "reference");
@@ -91,8 +55,7 @@ static void place(struct sim *s, const struct frame_table *t)
     for (size_t i = 0; i < n; i++) memcpy(h->x + 3 * i, reference + 4 * i, 3 * sizeof *h->x);
     particles_place(s->dev, p, &run->features, h);
     buffer_reserve(s->dev, &p->reference, 4 * particles_preal(&run->features) * n);
-    particles_write(s->dev, &p->reference, f, 0, 4 * n, reference);
-    particles_write(s->dev, &p->reach, f, 0, n, frame_table_get(t, "reach"));
+    particle_fields_restore(s, t, true);
     int64_t built_at = h5_read_i64(s->from->reader, "built_at");
     s->step = s->from->step;
     if (run->wall_contacts) wall_contacts_set_step(s->dev, run->wall_contacts, built_at);
@@ -101,8 +64,7 @@ static void place(struct sim *s, const struct frame_table *t)
     free(h->x);
     h->x = now;
     particles_write_state(s->dev, p, &run->features, h);
-    write_vectors(s, &p->force, frame_table_get(t, "force"), t->n);
-    if (run->features.spin) write_vectors(s, &p->torque, frame_table_get(t, "torque"), t->n);
+    particle_fields_restore(s, t, false);
     particles_host_free(h);
 }
 

@@ -100,6 +100,27 @@ static void print_row(const struct scene_key *key, int path_width)
     free(text);
 }
 
+/* What the key's words mean, or what its columns are. */
+static void print_items(const struct scene_item *items)
+{
+    int width = 0;
+    for (const struct scene_item *i = items; i->name; i++) {
+        int length = (int)strlen(i->name);
+        width = length > width ? length : width;
+    }
+    for (const struct scene_item *i = items; i->name; i++)
+        printf("    %-*s  %-7s  %s\n", width, i->name, i->unit, i->text);
+}
+
+/* Whether the pattern is `key` itself, and not below it. */
+static bool is_itself(const char *pattern, const char *key)
+{
+    int depth = 0;
+    for (; *pattern; pattern++) depth += *pattern == '.';
+    for (; *key; key++) depth -= *key == '.';
+    return depth == 0;
+}
+
 /* Names the key nearest to `key` on stderr. */
 static void report_unknown(const char *key)
 {
@@ -133,7 +154,11 @@ bool scene_explain(const char *key)
     }
     printf("%-*s  %-20s  %-5s  %-22s  %s\n", width, "key", "type", "unit", "default", "meaning");
     for (int k = 0; k < scene_keys_n; k++)
-        if (!key || is_below(scene_keys[k].path, key)) print_row(&scene_keys[k], width);
+        if (!key || is_below(scene_keys[k].path, key)) {
+            print_row(&scene_keys[k], width);
+            if (key && scene_keys[k].items && is_itself(scene_keys[k].path, key))
+                print_items(scene_keys[k].items);
+        }
     if (!key)
         printf(
             "\nA number may carry a unit, also a compound one: 5 mm, 1 kN/m, 210 GPa, 7.85 g/cm3, "

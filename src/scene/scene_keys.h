@@ -13,6 +13,7 @@
 #include <stddef.h>
 
 #include "scene.h"
+#include "scene_item.h"
 #include "units.h"
 
 enum key_type {
@@ -67,6 +68,8 @@ struct scene_key {
     /* KEY_CHOICE, KEY_WORDS: "linear|hertz", in the order of the enum, an empty one cannot be
      * chosen */
     const char *words;
+    /* what `explain` adds: the words of KEY_WORDS one by one, or the columns that a measure has */
+    const struct scene_item *items;
     /* KEY_NUMBER, KEY_INTEGER, KEY_VECTOR, KEY_MAP: a word in place of a number, of the mapping
      * ... */
     const char *special;

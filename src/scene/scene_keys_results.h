@@ -5,16 +5,13 @@
 {"output.every", KEY_NUMBER, OPTIONAL, UNIT_TIME, "0", FROM_ZERO, .at = AT(scene, output.every),
     .text = "simulated time between frames; 0: first and last only"},
 {"output.fields", KEY_WORDS, .only = "particles", .fallback = "[velocity, radius]",
-    .words = "velocity|angular_velocity|orientation|radius|mass|force|coordination|id|material|"
-        "owner",
+    .words = OUTPUT_FIELDS_PARTICLES(OUTPUT_FIELDS_WORD), .items = output_fields_particles,
     .at = AT(scene, output.field), .count_at = AT(scene, output.n_field),
-    .text = "fields of each particle in a frame; force: net contact force; coordination: number of "
-        "contacts; owner: rank"},
+    .text = "fields of each particle in a frame, besides its position"},
 {"output.fields", KEY_WORDS, .only = "lattice", .fallback = "[displacement, velocity]",
-    .words = "displacement|rotation|velocity|angular_velocity|stress|von_mises|broken|id|body|"
-        "material|owner",
+    .words = OUTPUT_FIELDS_LATTICE(OUTPUT_FIELDS_WORD), .items = output_fields_lattice,
     .at = AT(scene, output.field), .count_at = AT(scene, output.n_field),
-    .text = "fields of each cell in a frame; broken: number of broken links; owner: rank"},
+    .text = "fields of each cell in a frame"},
 {"output.checkpoint_every", KEY_NUMBER, OPTIONAL, UNIT_TIME, "0", FROM_ZERO,
     .at = AT(scene, output.checkpoint_every),
     .text = "simulated time between additional frames, for `democles resume`; 0: none"},

@@ -8,6 +8,7 @@
 #include <string.h>
 #include <cmocka.h>
 
+#include "scene/output_fields.h"
 #include "scene/scene.h"
 #include "scene/scene_keys.h"
 
@@ -87,6 +88,25 @@ static void materials_have_names(void **state)
     free(text);
 }
 
+/* A key whose words are fields says what each is, if asked for by itself. */
+static void fields_are_explained(void **state)
+{
+    (void)state;
+    char *text = explain("output.fields", &stdout, true), *above = explain("output", &stdout, true);
+    for (int k = 0; k < 2; k++) {
+        const struct scene_item *i = k ? output_fields_lattice : output_fields_particles;
+        for (; i->name; i++) {
+            char line[256];
+            snprintf(line, sizeof line, "\n    %-16s  %-7s  %s\n", i->name, i->unit, i->text);
+            if (!strstr(text, line)) fail_msg("%s is not explained", i->name);
+        }
+    }
+    assert_non_null(strstr(text, "net contact force"));
+    assert_int_equal(lines(above), 1 + 5); /* what is above them stays short */
+    free(text);
+    free(above);
+}
+
 static void unknown_key_names_the_nearest(void **state)
 {
     (void)state;
@@ -106,6 +126,7 @@ int main(void)
         cmocka_unit_test(a_part),
         cmocka_unit_test(one_key),
         cmocka_unit_test(materials_have_names),
+        cmocka_unit_test(fields_are_explained),
         cmocka_unit_test(unknown_key_names_the_nearest),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -240,8 +240,8 @@ static void other_method(void **state)
         "scene.yaml:5:39: measure[0].probe.element: only valid with method: particles");
     fixture_expect_one(f, SCENE(GOOD, "output: {fields: [radius]}\n"),
         "scene.yaml:5:19: output.fields[0]: unknown field 'radius'; expected one of: "
-        "displacement, rotation, velocity, angular_velocity, stress, von_mises, broken, id, body, "
-        "material, owner");
+        "id, displacement, rotation, velocity, angular_velocity, stress, von_mises, broken, "
+        "body, material, owner");
     fixture_scene(f,
         "method: particles\ntime: {end: 1, scheme: rk4}\nmaterials: {m: {density: 1, damping: "
         "{mass: 1}}}\n"
