@@ -46,8 +46,7 @@ class Job:
                 with open(path, "rb") as file:
                     environ = dict(word.split(b"=", 1) for word in file.read().split(b"\0") if b"=" in word)
                 pid = int(path.split("/")[2])
-                is_ours = os.getsid(pid) == self.process.pid and os.readlink(f"/proc/{pid}/exe") == parallel_runs.DEMOCLES
-                if is_ours and variable in environ:
+                if self.owns(pid) and os.readlink(f"/proc/{pid}/exe") == parallel_runs.DEMOCLES and variable in environ:
                     found[int(environ[variable])] = pid
             except (OSError, ProcessLookupError):
                 continue
@@ -78,9 +77,14 @@ class Job:
             self.process.wait()
             return "hangs"
 
+    def owns(self, pid):
+        """Whether a process is of this job: in its session, or, since MPICH gives each rank one of its own, named by its folder."""
+        with open(f"/proc/{pid}/cmdline", "rb") as file:
+            return os.getsid(pid) == self.process.pid or os.fsencode(self.dir) in file.read().split(b"\0")
+
     def alive(self):
         """Whether any process of the job is still there."""
-        return any(os.getsid(int(p.split("/")[2])) == self.process.pid for p in glob.glob("/proc/[0-9]*") if os.path.exists(p)
+        return any(self.owns(int(p.split("/")[2])) for p in glob.glob("/proc/[0-9]*") if os.path.exists(p)
                    and int(p.split("/")[2]) != self.process.pid and _state(p) not in "ZX")
 
     def err(self):
