@@ -1,10 +1,8 @@
 /* wall_force against contact_law on the host, bit for bit, over several steps: every kind of
  * primitive that the flags have, at rest or in motion, touching, parting, bonded, far away.
  * Compiled once for each set of features and each precision, see meson.build. */
-#include "contact_scene.h"
-#include "comm/fail.h"
+#include "force_fixture.h"
 #include "kernels/contact/law_wall.h"
-#include "record_reader.h"
 
 /* The geometry of walls in motion is written for tables in device memory; everything it includes
  * has been included, for the host. */
@@ -19,38 +17,25 @@ enum {
     CAPACITY = 912,
     N_WALL = 6,
     N_PRIMITIVE = 40,
-    N_STEP = 5,
     RESULT_ROOM = 16
 };
 static const double radius = 2e-3;
-static uint64_t seed = 4;
 
 struct test {
-    struct device *dev;
-    struct contact_scene contacts;
+    struct force_run f;
     struct record element[N_ELEMENT];
     preal primitive[N_PRIMITIVE][WALL_PRIMITIVE_WIDTH], pose[N_WALL][POSE_WIDTH];
     int wall_of[N_PRIMITIVE], wall_material[N_WALL], candidate[N_CANDIDATE],
         of_element[N_CANDIDATE], keep[N_CANDIDATE], state[CAPACITY];
     real history[(HISTORY_WIDTH + 1) * CAPACITY];
     double ledger[LEDGER_WIDTH * CAPACITY]; /* of the host */
-    double row[N_MATERIAL * N_MATERIAL][TABLE_WIDTH];
-    struct buffer buffer[13];
-    struct launch *launch;
-    struct reader reader;
-    int n_touching, n_apart, n_ended, n_begun;
 };
-
-static double any(void)
-{
-    return scratch_random(&seed, -1, 1);
-}
 
 /* Two perpendicular unit vectors into b and c. */
 static void set_axes(preal *b, preal *c)
 {
     double r[9];
-    scratch_rotation(&seed, r);
+    force_rotation(r);
     for (int a = 0; a < 3; a++) {
         b[a] = (preal)r[a];
         c[a] = (preal)r[3 + a];
@@ -67,11 +52,11 @@ static void set_primitive(struct test *t, int k)
     if (WITH_TRIANGLE) kinds[n_kind++] = WALL_TRIANGLE;
     preal *row = t->primitive[k];
     int kind = kinds[k % n_kind];
-    for (int a = 0; a < 3; a++) row[a] = (preal)(0.05 * any());
+    for (int a = 0; a < 3; a++) row[a] = (preal)(0.05 * force_any());
     set_axes(row + 3, row + 6);
-    for (int a = 3; a < 9 && kind == WALL_TRIANGLE; a++) row[a] = (preal)(0.05 * any());
-    row[9] = (preal)(0.01 + 0.005 * any());
-    row[10] = (preal)(0.02 + 0.01 * any());
+    for (int a = 3; a < 9 && kind == WALL_TRIANGLE; a++) row[a] = (preal)(0.05 * force_any());
+    row[9] = (preal)(0.01 + 0.005 * force_any());
+    row[10] = (preal)(0.02 + 0.01 * force_any());
     row[11] = (preal)kind;
     t->wall_of[k] = k % N_WALL;
 }
@@ -80,9 +65,9 @@ static void set_poses(struct test *t)
 {
     for (int w = 0; w < N_WALL; w++) {
         double turn[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-        if (WITH_MOVING) scratch_rotation(&seed, turn);
+        if (WITH_MOVING) force_rotation(turn);
         for (int c = 0; c < 9; c++) t->pose[w][c] = (preal)turn[c];
-        for (int c = 9; c < POSE_WIDTH; c++) t->pose[w][c] = WITH_MOVING ? (preal)any() : 0;
+        for (int c = 9; c < POSE_WIDTH; c++) t->pose[w][c] = WITH_MOVING ? (preal)force_any() : 0;
         for (int a = 9; a < 12; a++) t->pose[w][a] *= (preal)0.1;
         for (int a = 15; a < 18; a++) t->pose[w][a] *= (preal)100;
         t->pose[w][21] = 1;
@@ -99,30 +84,19 @@ static struct wall_primitive primitive_of(const struct test *t, int k)
 static void set_element(struct test *t, int e)
 {
     struct record *r = &t->element[e];
-    int k = (int)scratch_random(&seed, 0, N_PRIMITIVE), material = WITH_MATERIALS && any() < 0;
-    double own = WITH_SIZES ? radius * (2 + any()) / 2 : radius,
-           gap = e % 10 == 9 ? 0.3 * radius * any() : 2e-5 * any();
+    int k = (int)force_between(0, N_PRIMITIVE);
+    double gap = e % 10 == 9 ? 0.3 * radius * force_any() : 2e-5 * force_any();
     struct wall_frame frame = pose_frame(t->pose[t->wall_of[k]]);
-    pvec3 q = p3((preal)(t->primitive[k][0] + (preal)(0.02 * any())),
-        (preal)(t->primitive[k][1] + (preal)(0.02 * any())),
-        (preal)(t->primitive[k][2] + (preal)(0.02 * any())));
-    struct wall_closest c = wall_closest(primitive_of(t, k), q);
-    pvec3 x = wall_to_world(frame, p3_fma(c.distance - (preal)(own + gap), c.n, q));
-    memset(r, 0, sizeof *r);
-    r->radius = (preal)own;
-    r->inverse_m = (real)(1 / (t->contacts.material[material].density * 4.18879 * own * own * own));
+    preal q[3];
+    force_element(&t->f, r, radius);
+    for (int a = 0; a < 3; a++) q[a] = t->primitive[k][a] + (preal)(0.02 * force_any());
+    pvec3 near = p3(q[0], q[1], q[2]);
+    struct wall_closest c = wall_closest(primitive_of(t, k), near);
+    pvec3 x = wall_to_world(frame, p3_fma(c.distance - (r->radius + (preal)gap), c.n, near));
     r->x[0] = x.x;
     r->x[1] = x.y;
     r->x[2] = x.z;
-    for (int a = 0; a < 3; a++) {
-        r->v[a] = (real)(any() + (double)t->pose[t->wall_of[k]][12 + a]);
-#if WITH_SPIN
-        r->w[a] = (real)(100 * any());
-#endif
-    }
-#if WITH_SPIN
-    r->material = (real)material;
-#endif
+    for (int a = 0; a < 3; a++) r->v[a] += (real)t->pose[t->wall_of[k]][12 + a];
     t->candidate[e] = k;
     t->of_element[e] = e;
 }
@@ -130,44 +104,23 @@ static void set_element(struct test *t, int e)
 static void set_candidate(struct test *t, int k)
 {
     if (k >= N_ELEMENT) { /* further ones, mostly far away */
-        t->of_element[k] = (int)scratch_random(&seed, 0, N_ELEMENT);
-        t->candidate[k] = (int)scratch_random(&seed, 0, N_PRIMITIVE);
+        t->of_element[k] = (int)force_between(0, N_ELEMENT);
+        t->candidate[k] = (int)force_between(0, N_PRIMITIVE);
     }
-    t->keep[k] = any() > -0.8;
-    if (!WITH_HISTORY || k % 3 == 1) return;
-    t->state[k] = CONTACT_TOUCHING | (WITH_BINDING ? CONTACT_BONDED : 0);
-    for (int c = 0; c < 3; c++) {
-        if (WITH_TANGENTIAL) t->history[(XI_AT + c) * CAPACITY + k] = (real)(1e-5 * any());
-        if (WITH_ROLLING_EPSD) t->history[(THETA_AT + c) * CAPACITY + k] = (real)(1e-3 * any());
-        if (WITH_WALL_WORK) t->history[(WALL_FORCE_AT + c) * CAPACITY + k] = (real)(0.1 * any());
-    }
-}
-
-static void set_state(struct test *t)
-{
-    contact_scene_init(&t->contacts);
-    set_poses(t);
-    for (int k = 0; k < N_PRIMITIVE; k++) set_primitive(t, k);
-    for (int e = 0; e < N_ELEMENT; e++) set_element(t, e);
-    for (int k = 0; k < N_CANDIDATE; k++) set_candidate(t, k);
-    for (int a = 0; a < N_MATERIAL; a++)
-        for (int b = 0; b < N_MATERIAL; b++)
-            contact_scene_row(&t->contacts, a, b, true, radius, 1 / (double)t->element[0].inverse_m,
-                t->row[N_MATERIAL * a + b]);
+    t->keep[k] = force_any() > -0.8;
+    force_history(t->state, t->history, CAPACITY, (size_t)k);
+    for (int c = 0; c < 3 && WITH_WALL_WORK && t->state[k]; c++)
+        t->history[(WALL_FORCE_AT + c) * CAPACITY + k] = (real)(0.1 * force_any());
 }
 
 static void set_arguments(struct test *t)
 {
-    struct device *dev = t->dev;
-    struct launch *k = t->launch;
-    real table[N_MATERIAL * N_MATERIAL][TABLE_WIDTH];
-    for (int r = 0; r < N_MATERIAL * N_MATERIAL; r++)
-        for (int c = 0; c < TABLE_WIDTH; c++) table[r][c] = (real)t->row[r][c];
+    struct force_run *f = &t->f;
     const struct {
         const char *name;
         size_t bytes;
         const void *data;
-    } array[] = {{"position", sizeof t->element, NULL},
+    } array[FORCE_BUFFERS] = {{"position", sizeof t->element, NULL},
         {"candidate", sizeof t->candidate, t->candidate},
         {"candidate_element", sizeof t->of_element, t->of_element},
         {"primitive", sizeof t->primitive, t->primitive},
@@ -175,15 +128,25 @@ static void set_arguments(struct test *t)
         {"keep", sizeof t->keep, t->keep}, {"state", sizeof t->state, t->state},
         {"history", sizeof t->history, t->history}, {"ledger", sizeof t->ledger, t->ledger},
         {"wall_material", sizeof t->wall_material, t->wall_material},
-        {"table", sizeof table, table}, {"result", RESULT_ROOM * CAPACITY * sizeof(real), NULL}};
-    for (int b = 0; b < 13; b++)
-        fixture_bind(dev, k, &t->buffer[b], array[b].name, array[b].bytes, array[b].data);
-    launch_bind_buffer(k, "motion", &t->buffer[0]);
-    launch_set_int(k, "n_candidate", N_CANDIDATE);
-    launch_set_int(k, "capacity", CAPACITY);
-    launch_set_int_if(k, "n_material", N_MATERIAL);
-    if (!launch_has(k, "table")) contact_table_set(k, t->row[0]);
-    launch_set_real(k, "dt", STEP);
+        {"table", sizeof f->table, f->table},
+        {"result", RESULT_ROOM * CAPACITY * sizeof(real), NULL}};
+    for (int b = 0; b < FORCE_BUFFERS; b++)
+        fixture_bind(
+            f->dev, f->launch, &f->buffer[b], array[b].name, array[b].bytes, array[b].data);
+    launch_bind_buffer(f->launch, "motion", &f->buffer[0]);
+    launch_set_int(f->launch, "n_candidate", N_CANDIDATE);
+    launch_set_int(f->launch, "capacity", CAPACITY);
+}
+
+static void set(struct force_run *f)
+{
+    struct test *t = (struct test *)f;
+    set_poses(t);
+    for (int k = 0; k < N_PRIMITIVE; k++) set_primitive(t, k);
+    for (int e = 0; e < N_ELEMENT; e++) set_element(t, e);
+    for (int k = 0; k < N_CANDIDATE; k++) set_candidate(t, k);
+    force_parameters(f, true, radius, 1 / (double)t->element[0].inverse_m);
+    set_arguments(t);
 }
 
 struct host_contact {
@@ -209,9 +172,9 @@ static struct host_contact law_of(const struct test *t, int c)
     if (WITH_TABLE) row += t->wall_material[wall];
     struct contact_parameters q;
     if (WITH_SIZES)
-        q = contact_parameters_of(
-            contact_scene_material(t->row[row]), contact_pair_wall(e->inverse_m, own), (real)STEP);
-    else q = contact_scene_parameters(t->row[row]);
+        q = contact_parameters_of(contact_scene_material(t->f.row[row]),
+            contact_pair_wall(e->inverse_m, own), (real)STEP);
+    else q = contact_scene_parameters(t->f.row[row]);
     struct wall_geometry g = WITH_MOVING ? wall_geometry_moving(w, x, v, t->pose[wall], (real)STEP)
                                          : wall_geometry(w, x, v, (real)STEP);
     host.h = contact_scene_history(t->state, t->history, CAPACITY, (size_t)c);
@@ -227,20 +190,18 @@ static struct host_contact law_of(const struct test *t, int c)
 }
 
 /* A wall's work: mean of the force of the step before and of now, along the way of the wall. */
-static void check_work(
-    const struct test *t, const real *history, int c, struct host_contact host, double *ledger)
+static double work_of(const struct test *t, const real *history, int c, struct host_contact host)
 {
+    if (!WITH_WALL_WORK) return 0;
     vec3 before = contact_scene_plane(t->history, CAPACITY, (size_t)c, WALL_FORCE_AT);
     contact_scene_same("force that the wall remembers", c,
         contact_scene_plane(history, CAPACITY, (size_t)c, WALL_FORCE_AT), host.r.force);
-    ledger[LEDGER_WORK] +=
-        (double)((real)0.5 * (real)STEP * v3_dot(v3_add(before, host.r.force), host.v_wall));
+    return (double)((real)0.5 * (real)STEP * v3_dot(v3_add(before, host.r.force), host.v_wall));
 }
 
 static void check_candidate(struct test *t, int c, const struct reading *reading, const int *state,
     const real *history, const double *ledger, struct host_contact host)
 {
-    double own[LEDGER_WIDTH];
     const real *f = reading->force, *torque = reading->torque;
     /* zeros are added, so that -0 is 0 as in gather */
     vec3 zero = v3(0, 0, 0), expected = v3_fma(host.k.l_i, host.r.couple, host.r.moment);
@@ -249,95 +210,44 @@ static void check_candidate(struct test *t, int c, const struct reading *reading
         contact_scene_same(
             "torque", c, v3(torque[0], torque[1], torque[2]), v3_add(zero, expected));
     contact_scene_check_history(state, history, CAPACITY, (size_t)c, host.h);
-    if (!WITH_ENERGY) return;
-    for (int k = 0; k < LEDGER_WIDTH; k++) own[k] = t->ledger[k * CAPACITY + c];
-    contact_scene_ledger(host.r, own);
-    if (WITH_WALL_WORK) check_work(t, history, c, host, own);
-    for (int k = 0; k < LEDGER_WIDTH; k++) {
-        t->ledger[k * CAPACITY + c] = own[k];
-        fixture_same("ledger", c, ledger[k * CAPACITY + c], own[k]);
-    }
+    force_check_ledger(
+        ledger, t->ledger, CAPACITY, (size_t)c, host.r, work_of(t, history, c, host));
 }
 
-static void check_step(struct test *t)
+static void check(struct force_run *f)
 {
     static struct reading reading[N_CANDIDATE];
     static real history[(HISTORY_WIDTH + 1) * CAPACITY];
     static double ledger[LEDGER_WIDTH * CAPACITY];
     static int state[CAPACITY];
-    buffer_write(t->dev, &t->buffer[0], 0, sizeof t->element, t->element);
-    buffer_write(t->dev, &t->buffer[5], 0, sizeof t->pose, t->pose);
-    launch_run(t->launch, t->dev->compute, N_CANDIDATE, 0, NULL, NULL);
-    reader_read(&t->reader, NULL, 0, &t->buffer[12], N_CANDIDATE, reading);
-    buffer_read(t->dev, &t->buffer[7], 0, sizeof state, state);
-    buffer_read(t->dev, &t->buffer[8], 0, sizeof history, history);
-    buffer_read(t->dev, &t->buffer[9], 0, sizeof ledger, ledger);
+    struct test *t = (struct test *)f;
+    buffer_write(f->dev, &f->buffer[0], 0, sizeof t->element, t->element);
+    buffer_write(f->dev, &f->buffer[5], 0, sizeof t->pose, t->pose);
+    launch_run(f->launch, f->dev->compute, N_CANDIDATE, 0, NULL, NULL);
+    reader_read(&f->reader, NULL, 0, &f->buffer[12], N_CANDIDATE, reading);
+    buffer_read(f->dev, &f->buffer[7], 0, sizeof state, state);
+    buffer_read(f->dev, &f->buffer[8], 0, sizeof history, history);
+    buffer_read(f->dev, &f->buffer[9], 0, sizeof ledger, ledger);
     for (int c = 0; c < N_CANDIDATE; c++) {
         struct host_contact host = law_of(t, c);
         check_candidate(t, c, reading + c, state, history, ledger, host);
-        t->n_touching += host.h.state != 0;
-        t->n_apart += host.h.state == 0;
-        t->n_ended += t->state[c] != 0 && host.h.state == 0;
-        t->n_begun += t->state[c] == 0 && host.h.state != 0;
+        force_count(f, t->state[c], host.h.state);
     }
     memcpy(t->state, state, sizeof state);
     memcpy(t->history, history, sizeof history);
 }
 
-static void move(struct test *t)
+static void move(struct force_run *f)
 {
-    for (int e = 0; e < N_ELEMENT; e++)
-        for (int a = 0; a < 3; a++) {
-            t->element[e].x[a] += (preal)STEP * (preal)t->element[e].v[a];
-            t->element[e].v[a] += (real)(0.1 * any());
-        }
+    struct test *t = (struct test *)f;
+    force_move(t->element, N_ELEMENT);
     for (int w = 0; w < N_WALL && WITH_MOVING; w++)
         for (int a = 0; a < 3; a++) t->pose[w][9 + a] += (preal)STEP * t->pose[w][12 + a];
 }
 
-static void check_law(bool one_lane)
-{
-    static const char *const sources[] = {"wall_force.cl", NULL};
-    struct features features = fixture_features();
-    struct test *t = fail_alloc(sizeof *t);
-    t->dev = fixture_device();
-    t->dev->one_lane = one_lane;
-    struct program *program = fixture_program(t->dev, &features, FEATURES_WALL, sources);
-    t->launch = launch_create(program, "wall_force");
-    launch_set_batch(t->launch, BATCH);
-    reader_open(&t->reader, t->dev, &features);
-    set_state(t);
-    set_arguments(t);
-    for (int step = 0; step < N_STEP; step++) {
-        check_step(t);
-        move(t);
-    }
-    /* all kinds were there */
-    assert_true(t->n_touching > 500 && t->n_apart > 300 && t->n_begun > 20);
-    if (WITH_HISTORY) assert_true(t->n_ended > 20);
-    reader_close(&t->reader);
-    launch_free(t->launch);
-    program_free(program);
-    for (int k = 0; k < 13; k++) buffer_free(t->dev, &t->buffer[k]);
-    device_free(t->dev);
-    free(t);
-}
-
-static void batch_by_one_lane(void **unused)
-{
-    (void)unused;
-    check_law(true);
-}
-
-static void batch_by_many_lanes(void **unused)
-{
-    (void)unused;
-    check_law(false);
-}
-
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(batch_by_one_lane), cmocka_unit_test(batch_by_many_lanes)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    static const struct force_test test = {
+        "wall_force.cl", "wall_force", FEATURES_WALL, sizeof(struct test), 4, set, check, move};
+    return force_main(&test);
 }
