@@ -14,6 +14,9 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy  # noqa: E402
 
 
+DASHES = ("-", "--", "-.", ":")
+
+
 def read(path):
     """Titles [(name, unit)] and values [n_row][n_column]. A last line that a crash has cut short is left out."""
     with open(path, newline="") as file:
@@ -37,8 +40,12 @@ def draw(path, titles, values):
     for axis, unit in zip(axes[:, 0], units):
         columns = [k for k in range(1, len(titles)) if titles[k][1] == unit]
         names = [titles[k][0] for k in columns]
-        for k, name in zip(columns, names):
-            axis.plot(values[:, 0], values[:, k], label=name.replace("_", " "), lw=1.4, marker="o" if len(values) < 2 else None)
+        # ten colours that are easily told apart; more lines take theirs from a scale and differ by dashes
+        colours = plt.get_cmap("tab10").colors if len(columns) <= 10 else plt.get_cmap("turbo")(numpy.linspace(0.05, 0.95, len(columns)))
+        for n, (k, name) in enumerate(zip(columns, names)):
+            style = DASHES[n % len(DASHES)] if len(columns) > 10 else "-"
+            marker = "o" if len(values) < 2 else None
+            axis.plot(values[:, 0], values[:, k], color=colours[n], ls=style, label=name.replace("_", " "), lw=1.4, marker=marker)
         axis.set_ylabel(axis_label(names, unit), size=12)
         axis.grid(color="0.9")
         axis.spines[["top", "right"]].set_visible(False)

@@ -39,6 +39,7 @@ class Colours:
         self.unit = samples[0].unit(self.name)
         self.is_vector = samples[0].field(self.name).ndim > 1
         self.levels, self.is_cut = 256, False
+        self.words = []  # what the whole numbers from 0 on are called; none: their digits
         self.low, self.high = self.ends(everything, numpy.issubdtype(samples[0].field(self.name).dtype, numpy.integer)) if not ends else ends
 
     def ends(self, values, is_integer):
@@ -79,6 +80,13 @@ class Colours:
         name = known.get(self.name, self.name.replace("_", " "))
         share = ", largest 0.5 % in the last colour" if self.is_cut else ""
         return (f"{name} [{prefix}{self.unit}]" if self.unit else name) + share
+
+
+def words(scene, field):
+    """Names of materials or bodies in the order of their numbers in a frame."""
+    if field == "material":
+        return list(scene["materials"])
+    return [body["name"] for body in scene.get("bodies") or []] if field == "body" else []
 
 
 def magnification(samples):
@@ -165,7 +173,8 @@ class Layout:
         bar = self.figure.colorbar(matplotlib.cm.ScalarMappable(norm, colours.map()), cax=axis, orientation="horizontal")
         bar.set_label(colours.label(prefix), size=self.text)
         if colours.levels < 256:
-            bar.set_ticks(range(math.ceil(colours.low), math.floor(colours.high) + 1, max(1, colours.levels // 10)))
+            ticks = range(math.ceil(colours.low), math.floor(colours.high) + 1, max(1, colours.levels // 10))
+            bar.set_ticks(ticks, labels=[colours.words[t] if t < len(colours.words) else str(t) for t in ticks])
         bar.ax.tick_params(labelsize=0.9 * self.text)
 
     def scale_bar(self):
@@ -199,6 +208,7 @@ class Picture:
         self.end = max(frames.Frame(paths[-1]).time, 1e-12)
         ends = options.range
         self.colours = Colours(samples, options.field, ends)
+        self.colours.words = words(scene, self.colours.name)
         warp = options.warp if options.warp is not None else magnification(samples)
         low, high = extent(samples, self.walls, warp)
         axes = view_axes(low, high, scene.get("gravity"), options.view)
