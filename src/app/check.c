@@ -10,12 +10,13 @@
 #include "scene/scene_report.h"
 #include "shape/walls.h"
 
-/* Listed pairs per element of a dense packing with the usual skin: half of 8 to 10 neighbours. */
+/* Neighbour pairs per particle of a dense packing with the usual skin: half of 8 to 10
+ * neighbours. */
 static const double dense_pairs = 4.5;
 
 static void print_elements(const struct scene *scene, const struct elements_host *elements)
 {
-    printf("\nelements: %lld\n", (long long)elements->n);
+    printf("\nparticles: %lld\n", (long long)elements->n);
     for (int g = 0; g < scene->n_group; g++) {
         const struct element_group *group = &scene->group[g];
         double smallest = HUGE_VAL, largest = 0, mass = 0;
@@ -67,27 +68,27 @@ static void print_time(
     double speed = limit_speed(scene, walls, elements), limit = limit_dense(scene, elements, speed);
     double dt = time->step > 0 ? time->step : time->safety * limit;
     if (!(dt > 0 && isfinite(dt))) {
-        printf(
-            "\ntime: %g s; `step: auto` finds no limit in this scene: give a value\n", time->end);
+        printf("\ntime: %g s; `step: auto`: nothing in this scene limits the time step, so give a "
+               "value\n",
+            time->end);
         return;
     }
     if (!(time->end / dt <= SCENE_STEPS_MOST)) {
-        printf("\ntime: %g s; `step: auto` takes %.3g s, too many steps: give a value\n", time->end,
-            dt);
+        printf(
+            "\ntime: %g s; `step: auto` is %.3g s, too many steps: give a value\n", time->end, dt);
         return;
     }
     printf("\ntime: %g s in %.0f steps of %.6g s, ", time->end, ceil(time->end / dt * (1 - 1e-12)),
         dt);
     if (time->step > 0) printf("as given\n");
-    else printf("%g of the limit\n", time->safety);
-    printf(
-        "    limit %.4g s, for the densest packing of these elements and relative speeds of up to "
-        "%.3g m/s\n",
+    else printf("%g of the critical time step\n", time->safety);
+    printf("    critical time step %.4g s, for the densest packing of these particles and relative "
+           "speeds of up to %.3g m/s\n",
         limit, speed);
     if (time->step > limit)
-        printf("    the step is over it: a run %s\n",
-            time->allow_unstable ? "goes on, as asked for"
-                                 : "stops where its contacts are as stiff as that");
+        printf("    the time step exceeds it: a run %s\n",
+            time->allow_unstable ? "continues, as time.allow_unstable asks"
+                                 : "stops when its contacts are as stiff as that");
     struct scene_errors warnings = {0};
     limit_warnings(scene, elements, speed, dt, &warnings);
     for (int k = 0; k < warnings.n; k++) printf("    warning: %s\n", warnings.text[k]);
@@ -111,9 +112,9 @@ static void print_all(
     check_output(scene);
     check_features(features_name, feature_value, &features);
     double per_element = check_element_bytes(&features), per_pair = check_pair_bytes(&features);
-    printf(
-        "\nmemory on the devices: %.0f bytes per element and %.0f per listed pair; %.1f MiB with "
-        "%.2g pairs per element, as in a dense packing\n",
+    printf("\nmemory on the devices: %.0f bytes per particle and %.0f per neighbour pair; %.1f MiB "
+           "with "
+           "%.2g pairs per particle, as in a dense packing\n",
         per_element, per_pair,
         (per_element + dense_pairs * per_pair) * (double)elements->n / 1048576, dense_pairs);
 }

@@ -21,8 +21,8 @@ void check_head(const struct scene *scene)
         if (scene->domain.periodic[a])
             printf(", periodic in %c over %g m", "xyz"[a],
                 scene -> domain.max[a] - scene->domain.min[a]);
-    printf(
-        "%s\n", scene->domain.remove_outside ? ", elements that leave the domain are removed" : "");
+    printf("%s\n",
+        scene->domain.remove_outside ? ", particles that leave the domain are removed" : "");
 }
 
 void check_output(const struct scene *scene)

@@ -42,21 +42,21 @@ static double young_star(const struct material *a, const struct material *b)
            ((1 - a->poisson * a->poisson) / a->young + (1 - b->poisson * b->poisson) / b->young);
 }
 
-/* Contact time of the smallest elements. Linear: pi/(w sqrt(1 - z^2)), w^2 = k_n/m*, endless for z
- * >= 1. Hertz: 2.94328 delta_max/v without damping, delta_max = (5 m* v^2/(4 K))^(2/5), K = (4/3)
- * E* sqrt(R*), for v = 1 m/s. */
+/* Contact duration of the smallest particles. Linear: pi/(w sqrt(1 - z^2)), w^2 = k_n/m*, infinite
+ * for z >= 1. Hertz: 2.94328 delta_max/v without damping, for v = 1 m/s, with
+ * delta_max = (5 m* v^2/(4 K))^(2/5), K = (4/3) E* sqrt(R*). */
 static void print_impact(
     const struct contact *c, const char *who, double m_star, double r_star, double e_star)
 {
     double z = c->damping_ratio;
-    printf("        %s: m* %.4g kg, contact time ", who, m_star);
+    printf("        %s: m* %.4g kg, contact duration ", who, m_star);
     if (c->normal_law == NORMAL_HERTZ) {
         double k = 4.0 / 3.0 * e_star * sqrt(r_star);
         printf("%.4g s at 1 m/s, without damping\n", 2.94328 * pow(1.25 * m_star / k, 0.4));
     } else if (z < 1) {
         printf("%.4g s\n", M_PI / sqrt(c->stiffness / m_star * (1 - z) * (1 + z)));
     } else {
-        printf("without end, since the damping ratio is not below 1\n");
+        printf("none: overdamped (no finite contact duration)\n");
     }
 }
 
@@ -66,7 +66,7 @@ static void print_normal(const struct contact *c, double e_star)
     else printf("        hertz: E* %.4g Pa", e_star);
     double e = restitution_of_damping(c->damping_ratio, c->attraction);
     printf(", damping ratio %.4g (restitution %.4g%s)\n", c->damping_ratio, e,
-        c->attraction ? "" : ", no attraction");
+        c->attraction ? "" : ", no-tension limit");
 }
 
 static void print_rest(const struct contact *c)
@@ -80,14 +80,15 @@ static void print_rest(const struct contact *c)
         printf(", damping ratio %.4g, friction %.4g\n", c->tangential_damping, c->friction);
     }
     if (c->rolling == ROLLING_CDT)
-        printf("        rolling: constant torque, friction %.4g\n", c->rolling_friction);
+        printf(
+            "        rolling: constant directional torque, friction %.4g\n", c->rolling_friction);
     if (c->rolling == ROLLING_EPSD)
         printf("        rolling: elastic-plastic, friction %.4g, damping ratio %.4g\n",
             c->rolling_friction, c->rolling_damping);
     if (c->binding_force > 0) {
-        printf("        binding: %.4g N", c->binding_force);
+        printf("        binding: pull-off force %.4g N", c->binding_force);
         if (c->normal_law == NORMAL_LINEAR)
-            printf(", holds up to a gap of %.4g m", c->binding_force / c->stiffness);
+            printf(", acts up to a gap of %.4g m", c->binding_force / c->stiffness);
         printf("\n");
     }
 }
@@ -114,9 +115,10 @@ void check_contacts(const struct scene *scene, const struct elements_host *eleme
         print_normal(c, e_star);
         print_rest(c);
         if (both)
-            print_impact(c, "smallest elements", m[0] * m[1] / (m[0] + m[1]),
+            print_impact(c, "smallest particles", m[0] * m[1] / (m[0] + m[1]),
                 r[0] * r[1] / (r[0] + r[1]), e_star);
         for (int side = 0; side < (a == b ? 1 : 2); side++)
-            if (wall[side]) print_impact(c, "smallest element at a wall", m[side], r[side], e_star);
+            if (wall[side])
+                print_impact(c, "smallest particle at a wall", m[side], r[side], e_star);
     }
 }

@@ -22,11 +22,12 @@ static int64_t count_links(const struct lattice_cells *cells, int body)
 static void print_material(const struct material *m)
 {
     printf("    %s: density %g kg/m3, E %g Pa, nu %g", m->name, m->density, m->young, m->poisson);
-    if (m->mass_damping > 0) printf(", damping of mass %.4g 1/s", m->mass_damping);
-    if (m->link_damping > 0) printf(", of links %.4g s", m->link_damping);
-    if (m->has_strength && m->energy > 0) printf(", breaks by %.4g J/m2", m->energy);
-    else if (m->has_strength && isfinite(m->tension)) printf(", breaks at %.4g Pa", m->tension);
-    if (m->has_strength && isfinite(m->shear)) printf(", in shear at %.4g Pa", m->shear);
+    if (m->mass_damping > 0) printf(", mass-proportional damping %.4g 1/s", m->mass_damping);
+    if (m->link_damping > 0) printf(", stiffness-proportional damping %.4g s", m->link_damping);
+    if (m->has_strength && m->energy > 0) printf(", fracture energy %.4g J/m2", m->energy);
+    else if (m->has_strength && isfinite(m->tension))
+        printf(", tensile strength %.4g Pa", m->tension);
+    if (m->has_strength && isfinite(m->shear)) printf(", shear strength %.4g Pa", m->shear);
     printf("\n");
 }
 
@@ -43,7 +44,7 @@ static void print_cells(const struct scene *scene, const struct lattice_cells *c
             (long long)count_links(cells, b));
     }
     if (cells->n_grid > 1)
-        printf("    on %d grids: bodies on different ones are not joined\n", cells->n_grid);
+        printf("    %d grids: bodies on different grids are not joined\n", cells->n_grid);
     printf("\nmaterials\n");
     for (int k = 0; k < scene->n_material; k++) print_material(&scene->material[k]);
 }
@@ -80,21 +81,23 @@ static void print_time(const struct scene *scene, const struct lattice_cells *ce
     printf("\ntime: %g s in %.0f steps of %.6g s, ", time->end, ceil(time->end / dt * (1 - 1e-12)),
         dt);
     if (time->step > 0) printf("as given");
-    else printf("%g of the limit", time->safety);
+    else printf("%g of the critical time step", time->safety);
     printf(", by %s", scheme[time->scheme]);
     if (scene->lattice.relax)
-        printf(", or until %g of the largest force is left", scene->lattice.tolerance);
-    printf(
-        "\n    limit %.4g s, from the largest frequency, %.4g Hz\n", limit, largest / (2 * M_PI));
-    if (may_break(scene)) printf("    links that break do not raise it\n");
+        printf(", or until the residual force is below %g (static equilibrium)",
+            scene->lattice.tolerance);
+    printf("\n    critical time step %.4g s, from the highest natural frequency, %.4g Hz\n", limit,
+        largest / (2 * M_PI));
+    if (may_break(scene)) printf("    breakage of links does not raise that frequency\n");
     if (zeta > 0)
-        printf("    damping of links is %.4g of critical there%s", zeta,
-            factor < free ? "" : " and costs no time step\n");
+        printf("    stiffness-proportional damping is %.4g of critical there%s", zeta,
+            factor < free ? "" : " and does not reduce the critical time step\n");
     if (zeta > 0 && factor < free)
-        printf(", and makes the step %.3g times smaller than without\n", free / factor);
+        printf(
+            ", and makes the critical time step %.3g times smaller than without\n", free / factor);
     if (dt > limit)
-        printf("    the step is over it: a run %s\n",
-            time->allow_unstable ? "goes on, as asked for" : "is refused");
+        printf("    the time step exceeds it: a run %s\n",
+            time->allow_unstable ? "continues, as time.allow_unstable asks" : "is refused");
 }
 
 /* Bodies with one layer of cells along an axis have no Poisson effect in bending. */
@@ -110,7 +113,8 @@ static void print_thin(const struct scene *scene, const struct lattice_cells *ce
             }
             if (low == high && (scene->material[scene->body[b].material].poisson < 0 ||
                                    scene->material[scene->body[b].material].poisson > 0))
-                printf("    warning: '%s' is one cell thick in %c: no effect of Poisson's ratio in "
+                printf("    warning: '%s' is one cell thick in %c: Poisson's ratio has no effect "
+                       "in "
                        "bending\n",
                     scene->body[b].name, "xyz"[a]);
         }

@@ -15,17 +15,18 @@ static const struct command {
     const char *name, *operand, *text;
     bool needed; /* the operand */
 } COMMAND[] = {
-    [OPTIONS_RUN] = {"run", "SCENE", "run a scene; `mpirun -n N democles run SCENE` for N ranks",
+    [OPTIONS_RUN] = {"run", "SCENE", "runs a scene; `mpirun -n N democles run SCENE` uses N ranks",
         true},
     [OPTIONS_RESUME] = {"resume", "DIR",
-        "go on from the newest whole frame in DIR, on any number of ranks, with the same bits",
+        "resumes the run from the latest intact frame in DIR, on any number of ranks, bit for bit",
         true},
-    [OPTIONS_CHECK] = {"check", "SCENE", "read and validate a scene, and print what would run",
-        true},
-    [OPTIONS_DEVICES] = {"devices", NULL, "OpenCL devices, and which one each rank would take",
+    [OPTIONS_CHECK] = {"check", "SCENE", "validates a scene and prints what would run", true},
+    [OPTIONS_DEVICES] = {"devices", NULL,
+        "lists the OpenCL devices, and which one each rank "
+        "would use",
         false},
     [OPTIONS_EXPLAIN] = {"explain", "KEY",
-        "the scene language: every key, or those of KEY (contacts.normal)", false},
+        "explains the scene language: every key, or those of KEY (contacts.normal)", false},
 };
 
 enum {
@@ -56,30 +57,35 @@ static const struct option {
     const char *name, *value, *text; /* value: NULL for a switch */
     int commands;                    /* that know it, bits */
 } OPTION[N_OPTION] = {
-    [DIRECTORY] = {"-o", "DIR", "folder of the results [out/<name of the scene>]", RUN},
-    [SET] = {"--set", "KEY=VALUE", "change a key of the scene, as time.end=1s; may be given again",
+    [DIRECTORY] = {"-o", "DIR", "folder for the results [out/<name of the scene>]", RUN},
+    [SET] = {"--set", "KEY=VALUE", "changes a key of the scene, as in time.end=1s; may be repeated",
         RUN | RESUME | CHECK},
-    [FORCE] = {"--force", NULL, "replace earlier results in DIR", RUN},
+    [FORCE] = {"--force", NULL, "replaces earlier results in DIR", RUN},
     [DEVICE] = {"--device", "PLATFORM:DEVICE",
-        "indices or parts of names, as `democles devices` lists them; or a part of one name [the "
-        "best]",
+        "selects devices by indices or parts of names, as `democles devices` lists them, or by a "
+        "part of one name [the best]",
         RUN | RESUME},
-    [PRECISION] = {"--precision", "P", "double, mixed or single [the scene's]", RUN | CHECK},
-    [STEPS] = {"--steps", "N", "end after step N, counted from the scene's start", RUN | RESUME},
-    [MAX_TIME] = {"--max-time", "1h30m", "stop after this time on the clock, with exit code 75",
+    [PRECISION] = {"--precision", "P", "precision: double, mixed or single [the scene's]",
+        RUN | CHECK},
+    [STEPS] = {"--steps", "N", "ends the run after step N, counted from the start of the scene",
         RUN | RESUME},
-    [QUIET] = {"--quiet", NULL, "nothing to the screen but errors and warnings", RUN | RESUME},
+    [MAX_TIME] = {"--max-time", "1h30m",
+        "stops after this wall-clock time, with exit code 75; "
+        "`resume` continues",
+        RUN | RESUME},
+    [QUIET] = {"--quiet", NULL, "prints errors and warnings only", RUN | RESUME},
     [PROFILE] = {"--profile", NULL,
-        "device time of each kernel into run.json, at a small price; balance over time into "
-        "DIR/run.balance.csv",
+        "writes the device time of each kernel into run.json, at a small cost, and the load "
+        "balance over time into DIR/run.balance.csv",
         RUN | RESUME},
     [TRACE] = {"--trace", NULL,
-        "a timeline of some steps into DIR/trace.json, for Perfetto or chrome://tracing",
+        "writes a timeline of some steps into DIR/trace.json, for Perfetto or chrome://tracing",
         RUN | RESUME},
-    [TRACE_FROM] = {"--trace-from", "N", "that from step N on [about 100]", RUN | RESUME},
-    [TRACE_LENGTH] = {"--trace-steps", "N", "that of N steps [20]", RUN | RESUME},
-    [RESOLVED] = {"--resolved", NULL, "print only the scene, with all defaults", CHECK},
-    [RANKS] = {"--ranks", "N", "say what ranks 0 to N - 1 of a node take [those running]", DEVICES},
+    [TRACE_FROM] = {"--trace-from", "N", "first step of the timeline [about 100]", RUN | RESUME},
+    [TRACE_LENGTH] = {"--trace-steps", "N", "number of steps in the timeline [20]", RUN | RESUME},
+    [RESOLVED] = {"--resolved", NULL, "prints only the scene, with all defaults", CHECK},
+    [RANKS] = {"--ranks", "N", "number of ranks per node to list devices for [those running]",
+        DEVICES},
 };
 
 /* "; did you mean 'x'?", or where to look. Owned by the caller. */
@@ -266,7 +272,7 @@ static void help_command(enum options_command command, FILE *file)
         fprintf(file, "    %-25s  %s\n", left, OPTION[k].text);
         free(left);
     }
-    fprintf(file, "    %-25s  %s\n", "--help", "this");
+    fprintf(file, "    %-25s  %s\n", "--help", "prints this help");
 }
 
 void options_help(enum options_command command, FILE *file)
@@ -275,7 +281,7 @@ void options_help(enum options_command command, FILE *file)
         help_command(command, file);
         return;
     }
-    fprintf(file, "democles %s: discrete elements on OpenCL devices, distributed with MPI\n\n",
+    fprintf(file, "democles %s: a discrete element method solver for OpenCL devices and MPI\n\n",
         DEMOCLES_VERSION);
     for (int c = 0; c < OPTIONS_NONE; c++) {
         const struct command *row = &COMMAND[c];
@@ -284,9 +290,9 @@ void options_help(enum options_command command, FILE *file)
         fprintf(file, "    democles %-16s  %s\n", left, row->text);
         free(left);
     }
-    fprintf(file, "    democles %-16s  %s\n", "COMMAND --help", "options of a command");
-    fprintf(file, "    democles %-16s  %s\n", "--version", "version and commit");
+    fprintf(file, "    democles %-16s  %s\n", "COMMAND --help", "prints the options of a command");
+    fprintf(file, "    democles %-16s  %s\n", "--version", "prints the version and commit");
     fprintf(file,
         "\nexit codes: 0 done, 2 usage, 3 scene or input file wrong, 4 no usable device, 5 "
-        "numerics, 6 input/output, 75 stopped on request\n");
+        "numerical failure, 6 input/output, 75 stopped on request\n");
 }

@@ -36,7 +36,7 @@ double lattice_limit_uniform(enum link_set set, struct link_material m, double h
 {
     double g = link_constants_shear(m), lambda = link_constants_lambda(set, m),
            c = 1 / (m.density * h * h), p = lambda + 2 * g;
-    if (set == LINK_SEED) return sqrt(72 * m.young * c);
+    if (set == LINK_REFERENCE) return sqrt(72 * m.young * c);
     /* the two meet at 4.4305 G */
     return sqrt(c * fmax(28 * g, lambda > 2 * g ? 3 * p * p / lambda : 0));
 }

@@ -12,7 +12,7 @@ const char *link_constants_refusal(enum link_set set, struct link_material m)
                "stable";
     if (!(m.damping >= 0) || !isfinite(m.damping))
         return "the damping of links must not be negative";
-    if (set == LINK_SEED && (m.poisson < 0 || m.poisson > 0))
+    if (set == LINK_REFERENCE && (m.poisson < 0 || m.poisson > 0))
         return "poisson must be 0: the pair springs of this law, without a volumetric term, have "
                "no other";
     return NULL;
@@ -25,7 +25,8 @@ double link_constants_shear(struct link_material m)
 
 double link_constants_lambda(enum link_set set, struct link_material m)
 {
-    return set == LINK_SEED ? 0 : m.young * m.poisson / ((1 + m.poisson) * (1 - 2 * m.poisson));
+    return set == LINK_REFERENCE ? 0
+                                 : m.young * m.poisson / ((1 + m.poisson) * (1 - 2 * m.poisson));
 }
 
 /* Of one material alone. */
@@ -34,8 +35,8 @@ static struct link_stiffness own(enum link_set set, struct link_material m, doub
     double g = link_constants_shear(m), area = h * h * h;
     struct link_stiffness k = {.kn = 2 * g * h, .r_i = 1, .r_j = 1, .eta = m.damping};
     k.ks = k.kn;
-    k.kt = set == LINK_SEED ? m.young * area : g * area / 6;
-    k.kb = set == LINK_SEED ? m.young * area : m.young * area / 12;
+    k.kt = set == LINK_REFERENCE ? m.young * area : g * area / 6;
+    k.kb = set == LINK_REFERENCE ? m.young * area : m.young * area / 12;
     if (m.poisson == 0) k.kt = k.kb; /* to the last bit, see link_constants_twist_apart */
     return k;
 }

@@ -2,11 +2,11 @@
  * a cell. Knows no scene and no body; host only.
  *
  * LINK_ISOTROPIC: kn = ks = 2 G h, kt = G h^3/6, kb = E h^3/12, and lambda of each cell: isotropic
- * with the E and nu that are asked for. With nu = 0
- *     everywhere lambda is 0 and the volumetric pass can be left out.
- * LINK_SEED: kn = ks = E h, kt = kb = E h^3, as an earlier solver of this kind has them: nu = 0
- * only, and EI is too large by 1 + 11/n^2 for n cells
- *     over the thickness. For comparison with that solver.
+ *     with the E and nu that are asked for. With nu = 0 everywhere lambda is 0 and the volumetric
+ *     pass can be left out.
+ * LINK_REFERENCE: kn = ks = E h, kt = kb = E h^3, as an earlier solver of this kind has them:
+ *     nu = 0 only, and EI is too large by 1 + 11/n^2 for n cells over the thickness. For comparison
+ *     with that solver.
  *
  * Different materials: the face between them is the interface, so a link is two halves in series.
  * With M = lambda + 2 G
@@ -19,7 +19,7 @@
 
 #include <stdbool.h>
 
-enum link_set { LINK_ISOTROPIC, LINK_SEED };
+enum link_set { LINK_ISOTROPIC, LINK_REFERENCE };
 
 struct link_material {
     double density; /* [kg/m3] */
@@ -50,7 +50,7 @@ struct link_limits {
 /* NULL, or what speaks against the material, as the end of a sentence. */
 const char *link_constants_refusal(enum link_set set, struct link_material m);
 
-/* G and lambda [Pa]; lambda is 0 in LINK_SEED. */
+/* G and lambda [Pa]; lambda is 0 in LINK_REFERENCE. */
 double link_constants_shear(struct link_material m);
 double link_constants_lambda(enum link_set set, struct link_material m);
 

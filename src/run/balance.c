@@ -193,8 +193,8 @@ void balance_print(const struct balance *b, struct log *log)
     double n = q->n > 0 ? (double)q->n : 1;
     if (b->comm->n_rank == 1) return;
     log_print(log,
-        "partition %s: imbalance %.3g on average, %.3g at most; %.3g neighbours; %lld "
-        "repartitions, %lld elements moved",
+        "partition %s: load imbalance %.3g on average, %.3g at most; %.3g neighbour ranks; %lld "
+        "repartitions, %lld elements migrated",
         method_name[b->scene->method], q->imbalance_sum / n, q->imbalance_max,
         q->neighbours_sum / n, (long long)b->n_deal, (long long)b->n_moved);
 }

@@ -55,6 +55,7 @@ void scene_free(struct scene *scene)
     free(scene->name);
     free(scene->title);
     free(scene->resolved);
+    scene_errors_free(&scene->notes);
     free(scene);
 }
 

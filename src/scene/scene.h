@@ -22,7 +22,7 @@ enum precision { PRECISION_DEFAULT, PRECISION_DOUBLE, PRECISION_MIXED, PRECISION
 struct scene_time {
     double end;          /* [s] */
     double step;         /* [s]; 0: auto */
-    double safety;       /* [1] share of the rigorous limit that `auto` takes */
+    double safety;       /* [1] fraction of the critical time step that `auto` takes */
     enum scheme scheme;  /* particles: leapfrog */
     bool allow_unstable; /* run although the step is over its limit */
 };
@@ -144,7 +144,7 @@ struct boundary {
     int line, column;
 };
 
-enum lattice_law { LAW_ISOTROPIC, LAW_SEED }; /* in the order of enum link_set */
+enum lattice_law { LAW_ISOTROPIC, LAW_REFERENCE }; /* in the order of enum link_set */
 enum rotation { ROTATION_FINITE, ROTATION_SMALL };
 enum stress_form { STRESS_AVERAGE, STRESS_EXTRAPOLATED };
 struct lattice_method {
@@ -232,6 +232,12 @@ struct output {
     int n_field;
 };
 
+/* Messages of one reading, sorted by line and column. */
+struct scene_errors {
+    char **text;
+    int n;
+};
+
 struct scene {
     char *path; /* of the file, as given */
     char *name; /* stem of the file, or of its folder when the file is scene.yaml */
@@ -260,13 +266,8 @@ struct scene {
     int n_measure;
     /* the scene with all defaults, as YAML text that reads back to the same scene */
     char *resolved;
-    unsigned long hash; /* of the resolved text */
-};
-
-/* Messages of one reading, sorted by line and column. */
-struct scene_errors {
-    char **text;
-    int n;
+    unsigned long hash;        /* of the resolved text */
+    struct scene_errors notes; /* names of an earlier release that the scene uses */
 };
 
 /* Reads and checks `path`, with `set` (n_set strings KEY=VALUE, KEY as dotted path: time.end=1s,

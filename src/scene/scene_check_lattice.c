@@ -8,7 +8,7 @@
 #include "scene_path.h"
 #include "scene_reader.h"
 
-_Static_assert((int)LAW_SEED == LINK_SEED && (int)SCHEME_VEFRL == LATTICE_VEFRL &&
+_Static_assert((int)LAW_REFERENCE == LINK_REFERENCE && (int)SCHEME_VEFRL == LATTICE_VEFRL &&
                    (int)SCHEME_RKN4 == LATTICE_RKN4,
     "the scene's words and the laws");
 

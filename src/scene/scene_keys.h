@@ -70,6 +70,8 @@ struct scene_key {
     const char *words;
     /* what `explain` adds: the words of KEY_WORDS one by one, or the columns that a measure has */
     const struct scene_item *items;
+    /* KEY_CHOICE: "old|new": a word of the release before that still stands for one of `words` */
+    const char *renamed;
     /* KEY_NUMBER, KEY_INTEGER, KEY_VECTOR, KEY_MAP: a word in place of a number, of the mapping
      * ... */
     const char *special;

@@ -87,8 +87,8 @@ SPHERE_KEYS("boundaries[].where", boundary, where., AT_MOST_ONE),
 
 {"lattice", KEY_MAP, .fallback = "{}", .only = "lattice",
     .text = "model of the links between cells"},
-{"lattice.law", KEY_CHOICE, .fallback = "isotropic", .words = "isotropic|seed",
-    .at = AT(scene, lattice.law),
+{"lattice.law", KEY_CHOICE, .fallback = "isotropic", .words = "isotropic|reference",
+    .renamed = "seed|reference", .at = AT(scene, lattice.law),
     .text = "link stiffnesses; isotropic: those of the isotropic elastic solid of young and "
         "poisson; reference: those of a reference solver of the literature, for poisson: 0, too "
         "stiff in bending"},

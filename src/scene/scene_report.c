@@ -29,5 +29,6 @@ struct scene *scene_report_read(
         scene_errors_add(&errors, "%s: rank %d reads a different scene from this path than rank 0",
             path, comm->rank);
     scene_report_errors(comm, &errors);
+    for (int k = 0; k < scene->notes.n; k++) fail_warn("%s", scene->notes.text[k]);
     return scene;
 }

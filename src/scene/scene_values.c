@@ -38,12 +38,14 @@ void scene_values_join(char *text, size_t size, const char *const *word, int n)
     }
 }
 
-static int find_word(const struct scene_place *p, const struct scene_node *node,
+/* Index of `text`, what the node says, among the words; -1, after a message, if it is none of
+ * them. */
+static int find_word(const struct scene_place *p, const struct scene_node *node, const char *text,
     const char *const *word, int n, const char *what)
 {
     for (int k = 0; k < n; k++)
-        if (*word[k] && strcmp(word[k], node->text) == 0) return k;
-    const char *near = nearest_name(node->text, word, n);
+        if (*word[k] && strcmp(word[k], text) == 0) return k;
+    const char *near = nearest_name(text, word, n);
     char all[512];
     scene_values_join(all, sizeof all, word, n);
     if (near && *near)
@@ -131,13 +133,26 @@ static void read_bool(const struct scene_place *p, const struct scene_node *node
     scene_write_value(&p->reader->out, is_true ? "true" : "false");
 }
 
+/* The word that is meant: the node's own, or today's name for it, of which a note tells. */
+static const char *word_of_today(const struct scene_place *p, const struct scene_node *node)
+{
+    const char *bar = p->key->renamed ? strchr(p->key->renamed, '|') : NULL;
+    if (!bar || strlen(node->text) != (size_t)(bar - p->key->renamed) ||
+        strncmp(node->text, p->key->renamed, strlen(node->text)) != 0)
+        return node->text;
+    scene_errors_add(&p->reader->scene->notes,
+        "%s: %s: '%s' is now called '%s'; the old name will go with the next release",
+        p->reader->path, p->path, node->text, bar + 1);
+    return bar + 1;
+}
+
 static void read_choice(const struct scene_place *p, const struct scene_node *node)
 {
     char buffer[256];
     const char *word[MAX_WORDS];
     int n = split_words(p->key->words, buffer, sizeof buffer, word);
     if (!scene_is_kind(p, node, NODE_SCALAR, "a word")) return;
-    int index = find_word(p, node, word, n, "word");
+    int index = find_word(p, node, word_of_today(p, node), word, n, "word");
     if (index < 0) return;
     int *to = scene_key_place(p->key, p->record);
     if (to) *to = index;
@@ -195,7 +210,7 @@ static int find_reference(
     if (n == 0 && scene_issue_is_below(p->reader, list)) return -1;
     const char **name = fail_alloc((size_t)n * sizeof *name);
     for (int k = 0; k < n; k++) name[k] = referred_name(scene, type, k);
-    int index = find_word(p, node, name, n, what);
+    int index = find_word(p, node, node->text, name, n, what);
     free(name);
     return index;
 }
@@ -246,7 +261,7 @@ static int read_word_list(const struct scene_place *p, const struct scene_node *
         struct scene_place own = *p;
         own.path = fail_format("%s[%d]", p->path, k);
         int found = scene_is_kind(&own, node->item[k], NODE_SCALAR, "a word")
-                        ? find_word(&own, node->item[k], word, n_word, what)
+                        ? find_word(&own, node->item[k], node->item[k]->text, word, n_word, what)
                         : -1;
         bool again = false;
         for (int j = 0; j < n; j++) again = again || index[j] == found;

@@ -17,7 +17,7 @@ class Plate(cli.Case):
         return run.out
 
     def limit(self, text):
-        return float(text.split("    limit ")[1].split()[0])
+        return float(text.split("    critical time step ")[1].split()[0])
 
     def test_numbers(self):
         text = self.said()
@@ -42,7 +42,7 @@ class Plate(cli.Case):
         self.assertIn("link_damping", text.split("features in:")[1].split("features out:")[0])
 
     def test_step_over_the_limit(self):
-        self.assertIn("the step is over it: a run is refused\n", self.said("time.step=1e-6"))
+        self.assertIn("the time step exceeds it: a run is refused\n", self.said("time.step=1e-6"))
 
     def test_resolved(self):
         run = self.call("check", PLATE, "--resolved")

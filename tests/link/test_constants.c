@@ -32,7 +32,7 @@ static void without_poisson(void **state)
     (void)state;
     a.poisson = b.poisson = 0;
     struct link_stiffness k = link_constants_between(LINK_ISOTROPIC, a, b, 0.1),
-                          seed = link_constants_between(LINK_SEED, a, a, 0.1);
+                          seed = link_constants_between(LINK_REFERENCE, a, a, 0.1);
     assert_true(!link_constants_shear_apart(k) && !link_constants_twist_apart(k));
     /* two springs in series */
     assert_near(k.kn / (0.1 * 2 * a.young * b.young / (a.young + b.young)), 1, 1e-14);
@@ -98,15 +98,15 @@ static void refusals(void **state)
     (void)state;
     assert_null(link_constants_refusal(LINK_ISOTROPIC, steel));
     assert_null(link_constants_refusal(LINK_ISOTROPIC, (struct link_material){1, 1, -0.99, 0}));
-    assert_null(link_constants_refusal(LINK_SEED, (struct link_material){1, 1, 0, 0}));
+    assert_null(link_constants_refusal(LINK_REFERENCE, (struct link_material){1, 1, 0, 0}));
     refused(LINK_ISOTROPIC, 1, 1, 0.5, 0, "poisson");
     refused(LINK_ISOTROPIC, 1, 1, -1, 0, "poisson");
     refused(LINK_ISOTROPIC, 1, 1, NAN, 0, "poisson");
     refused(LINK_ISOTROPIC, 0, 1, 0, 0, "density");
     refused(LINK_ISOTROPIC, 1, -1, 0, 0, "young");
     refused(LINK_ISOTROPIC, 1, 1, 0, -1, "damping");
-    refused(LINK_SEED, 1, 1, 0.3, 0, "poisson must be 0");
-    refused(LINK_SEED, 1, 1, -1e-9, 0, "poisson must be 0");
+    refused(LINK_REFERENCE, 1, 1, 0.3, 0, "poisson must be 0");
+    refused(LINK_REFERENCE, 1, 1, -1e-9, 0, "poisson must be 0");
 }
 
 int main(void)

@@ -136,6 +136,19 @@ static void plate(void **state)
 #define GOOD "density: 1, young: 1, poisson: 0.2"
 #define BOUNDARY(rest) SCENE(GOOD, "boundaries: [{" rest "}]\n")
 
+/* The name of the release before is taken, noted, and written as today's. */
+static void renamed(void **state)
+{
+    struct fixture *f = *state;
+    fixture_scene(f, SCENE("density: 1, young: 1, poisson: 0", "lattice: {law: seed}\n"));
+    struct scene *s = fixture_read(f, NULL, 0);
+    assert_true(s->lattice.law == LAW_REFERENCE && s->notes.n == 1);
+    assert_non_null(strstr(
+        s->notes.text[0], "scene.yaml: lattice.law: 'seed' is now called 'reference'; the old"));
+    assert_non_null(strstr(s->resolved, "  law: reference\n"));
+    scene_free(s);
+}
+
 static void materials(void **state)
 {
     struct fixture *f = *state;
@@ -145,7 +158,7 @@ static void materials(void **state)
         "scene.yaml:3:26: materials.m.density: -1 is out of range: must be > 0");
     fixture_expect_one(f, SCENE("density: 1, poisson: 0", ""),
         "scene.yaml:3:16: materials.m: missing key 'young'");
-    fixture_expect_one(f, SCENE(GOOD, "lattice: {law: seed}\n"),
+    fixture_expect_one(f, SCENE(GOOD, "lattice: {law: reference}\n"),
         "scene.yaml:3:48: materials.m.poisson: poisson must be 0: the pair springs of this law, "
         "without a volumetric term, have no other");
     fixture_expect_one(f, SCENE(GOOD, "partition: {boundary: assigned}\n"),
@@ -268,6 +281,6 @@ static void other_method(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {TEST(every_key), TEST(resolved_reads_back), TEST(plate),
-        TEST(materials), TEST(boundaries), TEST(tables), TEST(other_method)};
+        TEST(materials), TEST(renamed), TEST(boundaries), TEST(tables), TEST(other_method)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

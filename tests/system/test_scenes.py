@@ -129,19 +129,19 @@ class Checked(Scenes):
         run = self.call("check", "scene.yaml")
         self.assertEqual((run.code, run.err), (0, []))
         self.assertTrue(run.out.startswith("two kinds of balls\n"))
-        for text in ("elements: 32\n", "small: 30 of glass, diameter 0.002 m,", "listed: 2 of glass, diameter 0.004 m,",
+        for text in ("particles: 32\n", "small: 30 of glass, diameter 0.002 m,", "listed: 2 of glass, diameter 0.004 m,",
                      "walls: 2, of 2 facets\n", "floor: steel, plane\n", "mould: steel, 1 triangle, until 0.0005 s\n",
                      "k_t 500 N/m", "in 1000 steps of 1e-06 s",
                      "every 0.0003 s, 5 in all", "energy.csv every 0.0001 s"):
             self.assertIn(text, run.out)
         pair, wall = run.out.split("glass and steel")
         m, z = 2500 * math.pi * 0.002**3 / 6, math.log(2) / math.hypot(math.pi, math.log(2))
-        self.assertAlmostEqual(self.number("smallest elements: m\\* # kg", pair) / (m / 2), 1, 3)
-        self.assertAlmostEqual(self.number("elements: m.* contact time # s", pair) / (math.pi * math.sqrt(m / 2 / 1000 / 0.99)), 1, 3)
+        self.assertAlmostEqual(self.number("smallest particles: m\\* # kg", pair) / (m / 2), 1, 3)
+        self.assertAlmostEqual(self.number("particles: m.* contact duration # s", pair) / (math.pi * math.sqrt(m / 2 / 1000 / 0.99)), 1, 3)
         self.assertAlmostEqual(self.number("restitution #\\)", pair), math.exp(-0.1 * math.pi / math.sqrt(0.99)), 3)
         self.assertAlmostEqual(self.number("damping ratio #", wall), z, 3)
         self.assertAlmostEqual(self.number("wall: m\\* # kg", wall) / m, 1, 3)
-        self.assertAlmostEqual(self.number("wall: m.* contact time # s", wall) / (math.pi * math.sqrt(m / 2000 / (1 - z * z))), 1, 3)
+        self.assertAlmostEqual(self.number("wall: m.* contact duration # s", wall) / (math.pi * math.sqrt(m / 2000 / (1 - z * z))), 1, 3)
 
     def test_features(self):
         def features(*args):
@@ -161,15 +161,15 @@ class Checked(Scenes):
         text = self.call("check", "scene.yaml", *args).out
         e_star, m, r = 1e6 / 2 / (1 - 0.25**2), 2500 * math.pi * 0.002**3 / 6 / 2, 0.0005
         self.assertAlmostEqual(self.number("E\\* # Pa", text) / e_star, 1, 3)
-        self.assertAlmostEqual(self.number("contact time # s at 1 m/s", text) / (2.87 * (m**2 / (r * e_star**2))**0.2), 1, 2)
+        self.assertAlmostEqual(self.number("contact duration # s at 1 m/s", text) / (2.87 * (m**2 / (r * e_star**2))**0.2), 1, 2)
 
     def test_step(self):
-        for step, allow, says in ((1e-6, "false", None), (1.0, "false", "a run stops"), (1.0, "true", "a run goes on")):
+        for step, allow, says in ((1e-6, "false", None), (1.0, "false", "a run stops"), (1.0, "true", "a run continues")):
             text = self.call("check", "scene.yaml", "--set", f"time.step={step}", "--set", f"time.allow_unstable={allow}").out
-            self.assertEqual("the step is over it" in text, says is not None)
-            self.assertIn(says or "limit", text)
+            self.assertEqual("the time step exceeds it" in text, says is not None)
+            self.assertIn(says or "critical time step", text)
         text = self.call("check", "scene.yaml", "--set", "time.step=auto", "--set", "time.safety=0.25").out
-        step, limit = self.number("steps of # s, 0.25 of the limit", text), self.number("limit # s, for the densest packing", text)
+        step, limit = self.number("steps of # s, 0.25 of the critical", text), self.number("critical time step # s, for the densest packing", text)
         self.assertAlmostEqual(step / (0.25 * limit), 1, 3)
 
     def test_resolved(self):
@@ -232,7 +232,7 @@ class Ran(Scenes):
             record = json.load(file)
         self.assertGreater(record["rebuilds"], 0)
         pairs = record["interactions"] / record["elements"]
-        bytes_now = self.number("# bytes per element", said) + self.number("and # per listed pair", said) * pairs
+        bytes_now = self.number("# bytes per particle", said) + self.number("and # per neighbour pair", said) * pairs
         # arrays that have grown hold up to a quarter more, and small things are not counted
         self.assertTrue(1 <= record["device_bytes_per_element"] / bytes_now <= 1.3, (record["device_bytes_per_element"], bytes_now))
 
