@@ -39,6 +39,21 @@ static void warn_of_ompio(void)
             io);
 }
 
+/* Under an mpirun of another MPI the ranks do not find each other, and each would run the whole
+ * scene. Both name the size of the job in the environment. */
+static void refuse_other_mpirun(int n_rank)
+{
+    static const char *const size[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"};
+    for (int k = 0; k < 2; k++) {
+        const char *text = getenv(size[k]);
+        if (n_rank == 1 && text && atoi(text) > 1)
+            fail_stop(EXIT_USAGE,
+                "mpirun started %s ranks (%s), but this one is alone: mpirun is not of the MPI "
+                "that democles is built with",
+                text, size[k]);
+    }
+}
+
 struct comm *comm_create(int *argc, char ***argv)
 {
     int provided;
@@ -56,6 +71,7 @@ struct comm *comm_create(int *argc, char ***argv)
     check_mpi(MPI_Comm_dup(MPI_COMM_WORLD, &comm->world));
     check_mpi(MPI_Comm_rank(comm->world, &comm->rank));
     check_mpi(MPI_Comm_size(comm->world, &comm->n_rank));
+    refuse_other_mpirun(comm->n_rank);
     check_mpi(MPI_Comm_split_type(
         comm->world, MPI_COMM_TYPE_SHARED, comm->rank, MPI_INFO_NULL, &comm->node));
     check_mpi(MPI_Comm_rank(comm->node, &comm->node_rank));

@@ -1,9 +1,14 @@
 #!/usr/bin/python3
 """Commands that only print, and refusals of the command line: exit code and text, once on any number of ranks."""
 import os
+import pathlib
 import re
+import sys
 
 import cli
+
+sys.path.insert(1, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
+from democles import mpi  # noqa: E402
 
 
 class Usage(cli.Case):
@@ -28,6 +33,12 @@ class Usage(cli.Case):
         run = self.call("--version")
         self.assertEqual((run.code, run.err), (0, []))
         self.assertRegex(run.out, r"\Ademocles \d+\.\d+\.\d+ \(\S+\)\n\Z")
+
+    def test_other_mpirun(self):
+        """The mpirun of another MPI gives a job its size, but the ranks do not find each other."""
+        run = self.call("--version", env={"PMI_SIZE" if mpi.is_open_mpi() else "OMPI_COMM_WORLD_SIZE": "2"})
+        self.assertEqual((run.code, run.out, len(run.err)), (2, "", 1))
+        self.assertIn("mpirun is not of the MPI that democles is built with", run.err[0])
 
 
 class Printed(cli.Case):
