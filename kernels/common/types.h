@@ -34,6 +34,7 @@
 #else
 #include <math.h>
 #include <stdint.h>
+#define __global /* the host has one address space: laws that read tables compile there too */
 #define LAW static inline __attribute__((unused))
 #if REAL_IS_FLOAT
 #define r_sqrt(x) sqrtf(x)

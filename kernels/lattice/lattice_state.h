@@ -33,36 +33,40 @@ struct lattice_load {
 };
 
 /* A row of loads, from device or host memory. */
-#define LATTICE_VEC(p, k) v3((p)[k], (p)[(k) + 1], (p)[(k) + 2])
-#define LATTICE_LOAD(l, p)                                                                         \
-    do {                                                                                           \
-        (l).force = LATTICE_VEC(p, LOAD_FORCE);                                                    \
-        (l).lever[0] = LATTICE_VEC(p, LOAD_LEVER);                                                 \
-        (l).lever[1] = LATTICE_VEC(p, LOAD_LEVER + 3);                                             \
-        (l).lever[2] = LATTICE_VEC(p, LOAD_LEVER + 6);                                             \
-        (l).body = LATTICE_VEC(p, LOAD_BODY);                                                      \
-        (l).traction = (p)[LOAD_TRACTION];                                                         \
-        (l).lower = v3((p)[LOAD_NORMAL], (p)[LOAD_NORMAL + 2], (p)[LOAD_NORMAL + 4]);              \
-        (l).upper = v3((p)[LOAD_NORMAL + 1], (p)[LOAD_NORMAL + 3], (p)[LOAD_NORMAL + 5]);          \
-        (l).acceleration = LATTICE_VEC(p, LOAD_ACCELERATION);                                      \
-        (l).v = LATTICE_VEC(p, LOAD_VELOCITY);                                                     \
-        (l).w = LATTICE_VEC(p, LOAD_VELOCITY + 3);                                                 \
-        (l).now_v = LATTICE_VEC(p, LOAD_NOW);                                                      \
-        (l).now_w = LATTICE_VEC(p, LOAD_NOW + 3);                                                  \
-        (l).rate = (p)[LOAD_RATE];                                                                 \
-    } while (0)
+LAW vec3 lattice_vec(__global const real *p, int k) { return v3(p[k], p[k + 1], p[k + 2]); }
+LAW struct lattice_load lattice_load_of(__global const real *p)
+{
+    struct lattice_load l;
+    l.force = lattice_vec(p, LOAD_FORCE);
+    l.lever[0] = lattice_vec(p, LOAD_LEVER);
+    l.lever[1] = lattice_vec(p, LOAD_LEVER + 3);
+    l.lever[2] = lattice_vec(p, LOAD_LEVER + 6);
+    l.body = lattice_vec(p, LOAD_BODY);
+    l.traction = p[LOAD_TRACTION];
+    l.lower = v3(p[LOAD_NORMAL], p[LOAD_NORMAL + 2], p[LOAD_NORMAL + 4]);
+    l.upper = v3(p[LOAD_NORMAL + 1], p[LOAD_NORMAL + 3], p[LOAD_NORMAL + 5]);
+    l.acceleration = lattice_vec(p, LOAD_ACCELERATION);
+    l.v = lattice_vec(p, LOAD_VELOCITY);
+    l.w = lattice_vec(p, LOAD_VELOCITY + 3);
+    l.now_v = lattice_vec(p, LOAD_NOW);
+    l.now_w = lattice_vec(p, LOAD_NOW + 3);
+    l.rate = p[LOAD_RATE];
+    return l;
+}
 /* A row of the table of links. */
-#define LATTICE_CONSTANTS(k, p)                                                                    \
-    do {                                                                                           \
-        (k).kn = (p)[0];                                                                           \
-        (k).ks = (p)[1];                                                                           \
-        (k).kt = (p)[2];                                                                           \
-        (k).kb = (p)[3];                                                                           \
-        (k).r_i = (p)[4];                                                                          \
-        (k).r_j = (p)[5];                                                                          \
-        (k).h = (p)[6];                                                                            \
-        (k).eta = (p)[7];                                                                          \
-    } while (0)
+LAW struct link_constants lattice_constants_of(__global const real *p)
+{
+    struct link_constants k;
+    k.kn = p[0];
+    k.ks = p[1];
+    k.kt = p[2];
+    k.kb = p[3];
+    k.r_i = p[4];
+    k.r_j = p[5];
+    k.h = p[6];
+    k.eta = p[7];
+    return k;
+}
 
 /* What the link over face `face` (bit of the mask, a constant) does to the cell `me`; p: lambda Th
  * [Pa]. */

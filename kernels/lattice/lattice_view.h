@@ -67,7 +67,7 @@ LAW struct link_constants lattice_constants(
         __global const real *row =
             s.link +
             (size_t)(face & 1 ? me * s.n_kind + other : other * s.n_kind + me) * LINK_WIDTH;
-        LATTICE_CONSTANTS(k, row);
+        k = lattice_constants_of(row);
     }
     return k;
 }
@@ -96,7 +96,7 @@ LAW struct lattice_view lattice_view_of(__global const preal *x, __global const 
     lattice_view_runs(&s, base, run, n_run);
     s.n_kind = n_kind;
     s.still = 0;
-    LATTICE_CONSTANTS(s.k, row);
+    s.k = lattice_constants_of(row);
     return s;
 }
 

@@ -43,15 +43,17 @@ struct lattice_kick {
     real whole;          /* G [s2] */
     real lost_v, lost_a; /* A [1], C [s2] */
 };
-#define LATTICE_KICK(k, p)                                                                         \
-    do {                                                                                           \
-        (k).f = (p)[0];                                                                            \
-        (k).g = (p)[1];                                                                            \
-        (k).s = (p)[2];                                                                            \
-        (k).whole = (p)[3];                                                                        \
-        (k).lost_v = (p)[4];                                                                       \
-        (k).lost_a = (p)[5];                                                                       \
-    } while (0)
+LAW struct lattice_kick lattice_kick_of(__global const real *p)
+{
+    struct lattice_kick k;
+    k.f = p[0];
+    k.g = p[1];
+    k.s = p[2];
+    k.whole = p[3];
+    k.lost_v = p[4];
+    k.lost_a = p[5];
+    return k;
+}
 
 /* Integrals along a kick or a stage, of a DOF that is free. */
 struct lattice_way {

@@ -27,7 +27,7 @@ LAW struct lattice_effort lattice_effort_of(int mixed, struct lattice_view s, si
     if (WITH_LOADS && mixed) {
         struct lattice_load load;
         __global const real *at = rows + (size_t)row[s.begin + l] * LOAD_WIDTH;
-        LATTICE_LOAD(load, at);
+        load = lattice_load_of(at);
         e.loads = lattice_load_add(e.loads, me, load);
         e.added = load.acceleration;
         e.v = load.now_v;
@@ -62,8 +62,8 @@ LAW void link_account_kicks(struct lattice_effort e, struct link_cell c, vec3 a,
     struct lattice_kick end, begin;
     struct lattice_ledger sum = lattice_ledger_of(ledger, plane, i);
     double alpha = (double)cell[6], mass = 1.0 / (double)cell[0], inertia = 1.0 / (double)cell[1];
-    LATTICE_KICK(end, kick);
-    LATTICE_KICK(begin, kick + KICK_PART);
+    end = lattice_kick_of(kick);
+    begin = lattice_kick_of(kick + KICK_PART);
     lattice_ledger_keep(ledger, plane, i,
         lattice_work_split(sum, e, c, a, b, end, begin, word, alpha, mass, inertia, count));
 }

@@ -44,7 +44,7 @@ __kernel __attribute__((reqd_work_group_size(SUMS_GROUP, 1, 1))) void link_energ
         struct lattice_load load = {.traction = 0};
 #if WITH_LOADS
         __global const real *load_row = rows + at_rows + (size_t)row[i] * LOAD_WIDTH;
-        LATTICE_LOAD(load, load_row);
+        load = lattice_load_of(load_row);
 #endif
         real links, volume, faces;
         account_elastic(s, l, word_i, c, load, constants, &links, &volume, &faces);

@@ -37,7 +37,7 @@ LAW struct lattice_pull lattice_pull_of(int mixed, struct lattice_view s, size_t
     if (WITH_LOADS && mixed) {
         struct lattice_load load;
         __global const real *at = rows + (size_t)row[s.begin + l] * LOAD_WIDTH;
-        LATTICE_LOAD(load, at);
+        load = lattice_load_of(at);
         sum = lattice_load_add(sum, me, load);
         add = WITH_GRAVITY ? v3_add(gravity, load.acceleration) : load.acceleration;
         r.given_v = load.v;
@@ -374,8 +374,8 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void lattice_f
         struct link_cell c = lattice_moving(s, i, lattice_cell(s, i));
 #if WITH_LOADS
         __global const real *at = rows + at_rows + (size_t)row[i] * LOAD_WIDTH + LOAD_VELOCITY;
-        c.v = lattice_hold(c.v, word[i], WORD_FIX, LATTICE_VEC(at, 0));
-        c.w = lattice_hold(c.w, word[i], WORD_FIX + 3, LATTICE_VEC(at, 3));
+        c.v = lattice_hold(c.v, word[i], WORD_FIX, lattice_vec(at, 0));
+        c.w = lattice_hold(c.w, word[i], WORD_FIX + 3, lattice_vec(at, 3));
 #endif
         lattice_keep(x + x_in, v + v_in, s.plane, i, lattice_drift(c, drift));
     }

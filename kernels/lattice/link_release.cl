@@ -37,7 +37,7 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void link_rele
         struct lattice_load load = {.traction = 0};
 #if WITH_LOADS
         __global const real *load_row = rows + at_rows + (size_t)row[i] * LOAD_WIDTH;
-        LATTICE_LOAD(load, load_row);
+        load = lattice_load_of(load_row);
 #endif
         __global const real *constants = cell + LATTICE_KIND(word_i) * CELL_WIDTH;
         if (late) released[i] += after * account_release(s, l, word_i, late, load, constants);

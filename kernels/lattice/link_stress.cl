@@ -34,7 +34,7 @@ LAW void lattice_stress_keep(
 LAW struct lattice_load lattice_load_at(__global const real *at)
 {
     struct lattice_load load;
-    LATTICE_LOAD(load, at);
+    load = lattice_load_of(at);
     return load;
 }
 #define LOAD_OF(i) lattice_load_at(rows + at_rows + (size_t)row[i] * LOAD_WIDTH)

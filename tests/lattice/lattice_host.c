@@ -81,7 +81,7 @@ static struct link_constants constants(const struct host *h, int64_t lower, int6
     const real *row =
         h->link +
         (h->cells->kind_of[lower] * h->cells->n_kind + h->cells->kind_of[higher]) * LINK_WIDTH;
-    LATTICE_CONSTANTS(k, row);
+    k = lattice_constants_of(row);
     return k;
 }
 
@@ -96,7 +96,7 @@ static struct lattice_load load_of(const struct host *h, int64_t i)
 {
     struct lattice_load load;
     const real *row = h->rows + h->cells->row[i] * LOAD_WIDTH;
-    LATTICE_LOAD(load, row);
+    load = lattice_load_of(row);
     return load;
 }
 
@@ -212,8 +212,8 @@ static void split(struct host *h, int k, double drift, int count, struct link_ce
         struct link_cell c = h->now[i];
         const real *cell = h->cell + h->cells->kind_of[i] * CELL_WIDTH;
         struct lattice_kick part[2];
-        LATTICE_KICK(part[0], kick);
-        LATTICE_KICK(part[1], kick + KICK_PART);
+        part[0] = lattice_kick_of(kick);
+        part[1] = lattice_kick_of(kick + KICK_PART);
         h->ledger[i] = lattice_work_split(h->ledger[i], r.effort, c, r.a, r.b, part[0], part[1],
             h->cells->bits[i], (double)cell[6], 1 / (double)cell[0], 1 / (double)cell[1], count);
         for (int n = 0; n < 2; n++) {
