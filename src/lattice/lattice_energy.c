@@ -1,19 +1,22 @@
 #include "lattice_energy.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "kernels/lattice/lattice_words.h"
 #include "comm/fail.h"
 #include "device/integer_sums.h"
 #include "lattice_break.h"
 #include "lattice_observed.h"
+#include "scene/measure_columns.h"
 
 struct lattice_account {
     struct lattice *l;
     struct program *program; /* NULL: no double precision */
     struct launch *launch;
     struct buffer place, partial;
-    double work, links, mass; /* when it was opened [J] */
+    /* what work and damping of links and of masses were when it was opened [J]; others are 0 */
+    struct lattice_energy opened;
 };
 
 /* Where the centre of each run's first cell is, there or not, and the edge of its cells: [n_run][4]
@@ -65,9 +68,7 @@ struct lattice_account *lattice_energy_create(struct lattice *l, const struct la
     for (int k = 0; k < 3; k++) launch_set_real(a->launch, gravity[k], l->options.gravity[k]);
     struct lattice_energy start;
     lattice_energy_now(a, &start);
-    a->work = start.work;
-    a->links = start.links;
-    a->mass = start.mass;
+    lattice_energy_reopen(a, (const double[]){start.work, start.link_damping, start.mass_damping});
     return a;
 }
 
@@ -84,17 +85,21 @@ void lattice_energy_free(struct lattice_account *a)
 
 void lattice_energy_opened(const struct lattice_account *a, double with[LATTICE_ENERGY_OPENED])
 {
-    with[0] = a->work;
-    with[1] = a->links;
-    with[2] = a->mass;
+    with[0] = a->opened.work;
+    with[1] = a->opened.link_damping;
+    with[2] = a->opened.mass_damping;
 }
 
 void lattice_energy_reopen(struct lattice_account *a, const double with[LATTICE_ENERGY_OPENED])
 {
-    a->work = with[0];
-    a->links = with[1];
-    a->mass = with[2];
+    a->opened.work = with[0];
+    a->opened.link_damping = with[1];
+    a->opened.mass_damping = with[2];
 }
+
+#define TERM(name, sign, known, source, text)                                                      \
+    ENERGY_TERM(struct lattice_energy, name, sign, known, source),
+const struct energy_term lattice_energy_table[] = {MEASURE_ENERGY_LATTICE(TERM){NULL, 0, 0, 0, 0}};
 
 void lattice_energy_now(struct lattice_account *a, struct lattice_energy *out)
 {
@@ -108,20 +113,13 @@ void lattice_energy_now(struct lattice_account *a, struct lattice_energy *out)
     for (int k = 0; k < ACCOUNT_WIDTH; k++) sum[k].bad += !a->program;
     for (int k = ACCOUNT_WORK; k <= ACCOUNT_RELEASED; k++) sum[k].bad += !a->l->features.energy;
     integer_sums_all(a->l->comm, sum, ACCOUNT_WIDTH, v);
-    *out = (struct lattice_energy){v[ACCOUNT_KINETIC], v[ACCOUNT_ROTATIONAL], v[ACCOUNT_GRAVITY],
-        v[ACCOUNT_ELASTIC], v[ACCOUNT_WORK] - a->work, v[ACCOUNT_LINKS] - a->links,
-        v[ACCOUNT_MASS] - a->mass, v[ACCOUNT_RELEASED],
-        {v[ACCOUNT_MOMENTUM], v[ACCOUNT_MOMENTUM + 1], v[ACCOUNT_MOMENTUM + 2]},
-        {v[ACCOUNT_ANGULAR], v[ACCOUNT_ANGULAR + 1], v[ACCOUNT_ANGULAR + 2]}};
-}
-
-static double account(const struct lattice_energy *e)
-{
-    return e->kinetic + e->rotational + e->gravity + e->elastic + e->links + e->mass + e->released -
-           e->work;
+    for (const struct energy_term *term = lattice_energy_table; term->name; term++)
+        *energy_terms_at(term, out) = v[term->source] - energy_terms_value(term, &a->opened);
+    memcpy(out->momentum, v + ACCOUNT_MOMENTUM, sizeof out->momentum);
+    memcpy(out->angular, v + ACCOUNT_ANGULAR, sizeof out->angular);
 }
 
 double lattice_energy_balance(const struct lattice_energy *start, const struct lattice_energy *now)
 {
-    return account(now) - account(start);
+    return energy_terms_balance(lattice_energy_table, start, now);
 }

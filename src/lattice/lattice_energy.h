@@ -4,8 +4,9 @@
 #define DEMOCLES_LATTICE_ENERGY_H
 
 #include "lattice.h"
+#include "run/energy_terms.h"
 
-/* NaN: not known, because nothing asks for it (work, links, mass, released: features.energy),
+/* NaN: not known, because nothing asks for it (work, link_damping, mass_damping, released: features.energy),
  * because the device has no double precision (all), or because some term was NaN or beyond measure
  * (kernels/common/sums.h). */
 struct lattice_energy {
@@ -15,10 +16,10 @@ struct lattice_energy {
     double elastic;
     /* [J] of loads and of prescribed motion, since the account was opened */
     double work;
-    double links, mass; /* [J] taken by damping since then: of links, of masses */
-    double released;    /* [J] by links that broke, since the start */
-    double momentum[3]; /* [kg m/s] */
-    double angular[3];  /* [J s] about the origin of coordinates */
+    double link_damping, mass_damping; /* [J] taken since then */
+    double released;                   /* [J] by links that broke, since the start */
+    double momentum[3];                /* [kg m/s] */
+    double angular[3];                 /* [J s] about the origin of coordinates */
 };
 
 struct lattice_account;
@@ -34,6 +35,10 @@ void lattice_energy_opened(const struct lattice_account *a, double with[LATTICE_
 void lattice_energy_reopen(struct lattice_account *a, const double with[LATTICE_ENERGY_OPENED]);
 /* Collective. */
 void lattice_energy_now(struct lattice_account *a, struct lattice_energy *out);
+
+/* The terms in the order of columns and of the record: energy_terms.h, over struct
+ * lattice_energy. */
+extern const struct energy_term lattice_energy_table[];
 
 /* Kinetic, rotational, elastic energy, gravity's, what damping took and breakage released, less the
  * work; now minus start [J]: zero in exact arithmetic and with an infinitely small step, else it

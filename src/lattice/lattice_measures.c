@@ -5,34 +5,14 @@
 #include <string.h>
 
 #include "comm/fail.h"
+#include "run/measures.h"
+#include "scene/measure_columns.h"
 
-int lattice_method_measure_columns(enum measure_kind kind, const struct series_column **column)
-{
-    static const struct series_column probe[] = {{"x", "m"}, {"y", "m"}, {"z", "m"}, {"u_x", "m"},
-        {"u_y", "m"}, {"u_z", "m"}, {"v_x", "m/s"}, {"v_y", "m/s"}, {"v_z", "m/s"},
-        {"w_x", "rad/s"}, {"w_y", "rad/s"}, {"w_z", "rad/s"}};
-    static const struct series_column energy[] = {{"kinetic", "J"}, {"rotational", "J"},
-        {"gravity", "J"}, {"elastic", "J"}, {"link_damping", "J"}, {"mass_damping", "J"},
-        {"released", "J"}, {"work", "J"}, {"balance", "J"}};
-    static const struct series_column momentum[] = {{"p_x", "N s"}, {"p_y", "N s"}, {"p_z", "N s"},
-        {"l_x", "N m s"}, {"l_y", "N m s"}, {"l_z", "N m s"}};
-    static const struct series_column peak[] = {
-        {"von_mises", "Pa"}, {"x", "m"}, {"y", "m"}, {"z", "m"}};
-    static const struct series_column broken[] = {
-        {"tension", "1"}, {"shear", "1"}, {"bending", "1"}, {"twist", "1"}};
-    if (kind == MEASURE_BROKEN) {
-        *column = broken;
-        return LATTICE_BREAK_MODES;
-    }
-    *column = kind == MEASURE_ENERGY       ? energy
-              : kind == MEASURE_MOMENTUM   ? momentum
-              : kind == MEASURE_STRESS_MAX ? peak
-                                           : probe;
-    return kind == MEASURE_ENERGY       ? 9
-           : kind == MEASURE_STRESS_MAX ? 4
-           : kind == MEASURE_MOMENTUM   ? 6
-                                        : 12;
-}
+/* What several measures of a step look at. */
+struct view {
+    struct lattice_state *state;  /* NULL where no due measure asks for it */
+    struct lattice_energy energy; /* likewise */
+};
 
 /* The cell whose centre at the start is nearest, the first of several; the same on every rank. */
 static int64_t nearest(const struct lattice_cells *cells, const double at[3])
@@ -52,10 +32,10 @@ static int64_t nearest(const struct lattice_cells *cells, const double at[3])
 }
 
 /* The cell's owner gives the bits, the others zeros. */
-static void measure_probe(
-    struct sim *s, const double at[3], const struct lattice_state *t, double *value)
+static void measure_probe(struct sim *s, int m, const struct view *view, double *value)
 {
-    int64_t gid = nearest(s->lattice->cells, at), bits[12] = {0};
+    const struct lattice_state *t = view->state;
+    int64_t gid = nearest(s->lattice->cells, s->scene->measure[m].at), bits[12] = {0};
     for (int64_t i = 0; i < t->n; i++) {
         if (t->gid[i] != gid) continue;
         double x[3];
@@ -71,8 +51,10 @@ static void measure_probe(
 
 /* The largest von Mises stress, and the centre at the start of the cell that has it, the first of
  * several. */
-static void measure_peak(struct sim *s, const struct lattice_state *t, double *value)
+static void measure_peak(struct sim *s, int m, const struct view *view, double *value)
 {
+    const struct lattice_state *t = view->state;
+    (void)m;
     double largest = -1;
     int64_t gid = INT64_MAX;
     for (int64_t i = 0; i < t->n; i++) largest = fmax(largest, t->von_mises[i]);
@@ -84,38 +66,60 @@ static void measure_peak(struct sim *s, const struct lattice_state *t, double *v
     if (gid < INT64_MAX) lattice_cells_centre(s->lattice->cells, gid, value + 1);
 }
 
-static void measure_broken(const struct sim *s, double *value)
+static void measure_broken(struct sim *s, int m, const struct view *view, double *value)
 {
+    (void)m;
+    (void)view;
     int64_t count[LATTICE_BREAK_MODES] = {0};
     if (s->lattice->lattice->breakage) lattice_break_count(s->lattice->lattice->breakage, count);
     for (int mode = 0; mode < LATTICE_BREAK_MODES; mode++) value[mode] = (double)count[mode];
 }
 
+static void measure_energy(struct sim *s, int m, const struct view *view, double *value)
+{
+    (void)m;
+    energy_terms_columns(lattice_energy_table, &s->lattice->energy_start, &view->energy, value);
+}
+
+static void measure_momentum(struct sim *s, int m, const struct view *view, double *value)
+{
+    (void)s;
+    (void)m;
+    memcpy(value, view->energy.momentum, sizeof view->energy.momentum);
+    memcpy(value + 3, view->energy.angular, sizeof view->energy.angular);
+}
+
+/* The measures of the method, a row each; those of the other method alone are empty. */
+static const struct measure_row {
+    const struct scene_item *column;
+    bool by_cell, by_energy; /* what it needs of struct view */
+    void (*measure)(struct sim *s, int m, const struct view *view, double *value);
+} measure_row[] = {
+    [MEASURE_ENERGY] = {measure_columns_energy_lattice, false, true, measure_energy},
+    [MEASURE_MOMENTUM] = {measure_columns_momentum, false, true, measure_momentum},
+    [MEASURE_PROBE] = {measure_columns_probe_lattice, true, false, measure_probe},
+    [MEASURE_STRESS_MAX] = {measure_columns_stress_max, true, false, measure_peak},
+    [MEASURE_BROKEN] = {measure_columns_broken, false, false, measure_broken},
+};
+
+int lattice_method_measure_columns(const struct sim *s, const struct measure *measure,
+    struct series_column column[STEP_MEASURE_COLUMNS])
+{
+    (void)s;
+    return measures_columns(column, 0, measure_row[measure->kind].column);
+}
+
 void lattice_method_measure(struct sim *s, const bool *due, double (*value)[STEP_MEASURE_COLUMNS])
 {
+    struct view view = {NULL};
     bool by_cell = false, by_energy = false;
-    for (int i = 0; i < s->scene->n_measure; i++) {
-        bool is_energy = s->scene->measure[i].kind == MEASURE_ENERGY ||
-                         s->scene->measure[i].kind == MEASURE_MOMENTUM;
-        by_energy |= due[i] && is_energy;
-        by_cell |= due[i] && !is_energy && s->scene->measure[i].kind != MEASURE_BROKEN;
+    for (int m = 0; m < s->scene->n_measure; m++) {
+        by_cell |= due[m] && measure_row[s->scene->measure[m].kind].by_cell;
+        by_energy |= due[m] && measure_row[s->scene->measure[m].kind].by_energy;
     }
-    struct lattice_energy e = {.kinetic = 0};
-    if (by_energy) lattice_energy_now(s->lattice->account, &e);
-    struct lattice_state *t = by_cell ? lattice_state_create(s) : NULL;
-    const double energy[] = {e.kinetic, e.rotational, e.gravity, e.elastic, e.links, e.mass,
-        e.released, e.work, lattice_energy_balance(&s->lattice->energy_start, &e)};
-    for (int i = 0; i < s->scene->n_measure; i++) {
-        const struct measure *what = &s->scene->measure[i];
-        if (!due[i]) continue;
-        if (what->kind == MEASURE_ENERGY) memcpy(value[i], energy, sizeof energy);
-        else if (what->kind == MEASURE_STRESS_MAX) measure_peak(s, t, value[i]);
-        else if (what->kind == MEASURE_BROKEN) measure_broken(s, value[i]);
-        else if (what->kind == MEASURE_PROBE) measure_probe(s, what->at, t, value[i]);
-        else {
-            memcpy(value[i], e.momentum, sizeof e.momentum);
-            memcpy(value[i] + 3, e.angular, sizeof e.angular);
-        }
-    }
-    lattice_state_free(t);
+    if (by_energy) lattice_energy_now(s->lattice->account, &view.energy);
+    if (by_cell) view.state = lattice_state_create(s);
+    for (int m = 0; m < s->scene->n_measure; m++)
+        if (due[m]) measure_row[s->scene->measure[m].kind].measure(s, m, &view, value[m]);
+    lattice_state_free(view.state);
 }

@@ -228,29 +228,10 @@ static void report_broken(struct sim *s, struct report *r)
 static void report_energy(struct sim *s, struct report *r, bool observed)
 {
     struct lattice_energy now = s->lattice->energy_start;
-    const struct lattice_energy *both[] = {&s->lattice->energy_start, &now};
-    static const char *const name[] = {"start", "end"};
     bool by_work = s->lattice->lattice->features.energy;
     if (observed) lattice_energy_now(s->lattice->account, &now);
-    report_begin(r, "energy");
-    for (int k = 0; k < 2; k++) {
-        report_begin(r, name[k]);
-        report_number(r, "kinetic", both[k]->kinetic);
-        report_number(r, "rotational", both[k]->rotational);
-        report_number(r, "gravity", both[k]->gravity);
-        report_number(r, "elastic", both[k]->elastic);
-        if (by_work) {
-            report_number(r, "link_damping", both[k]->links);
-            report_number(r, "mass_damping", both[k]->mass);
-            report_number(r, "released", both[k]->released);
-            report_number(r, "work", both[k]->work);
-        }
-        report_end(r);
-    }
-    report_number(r, "balance_error",
-        by_work && observed ? lattice_energy_balance(&s->lattice->energy_start, &now)
-                            : (double)NAN);
-    report_end(r);
+    energy_terms_report(lattice_energy_table, r, &s->lattice->energy_start, &now, by_work,
+        by_work && observed);
     report_numbers(r, "momentum", now.momentum, 3);
     report_broken(s, r);
 }

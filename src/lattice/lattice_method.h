@@ -49,7 +49,8 @@ void lattice_state_turn(
     const struct lattice_state *state, int64_t i, const double r[3], double out[3]);
 
 void lattice_method_frame(struct sim *s, int64_t index);
-int lattice_method_measure_columns(enum measure_kind kind, const struct series_column **column);
+int lattice_method_measure_columns(const struct sim *s, const struct measure *measure,
+    struct series_column column[STEP_MEASURE_COLUMNS]);
 void lattice_method_measure(struct sim *s, const bool *due, double (*value)[STEP_MEASURE_COLUMNS]);
 
 #endif

@@ -7,6 +7,7 @@
 #include "comm/fail.h"
 #include "device/integer_sums.h"
 #include "particle.h"
+#include "scene/measure_columns.h"
 
 /* Totals of this rank. The elastic energy's entry of `taken` stays zero. */
 struct totals {
@@ -264,13 +265,19 @@ void energy_restore(struct sim *s, const int64_t total[ENERGY_TOTALS][SUMS_WIDTH
                               : (struct sum){total[k][0], total[k][1], total[k][2], total[k][3]};
 }
 
+/* Sums in the order in which energy_now makes them, after those of elements. */
+enum { ELASTIC = SUMS_ELEMENT, TOTALS, REMOVED = TOTALS + LEDGER_WIDTH, N_SUM };
+
+#define TERM(name, sign, known, source, text)                                                      \
+    ENERGY_TERM(struct energy_sums, name, sign, known, source),
+const struct energy_term energy_table[] = {MEASURE_ENERGY_PARTICLES(TERM){NULL, 0, 0, 0, 0}};
+
 void energy_now(struct sim *s, struct energy_sums *out)
 {
     struct particle_run *run = s->particle;
-    enum { ELASTIC = SUMS_ELEMENT, TOTALS, REMOVED = TOTALS + LEDGER_WIDTH, N };
     struct energy *e = run->energy;
-    struct sum sum[N] = {{0}};
-    double v[N];
+    struct sum sum[N_SUM] = {{0}};
+    double v[N_SUM];
     if (e->program) {
         sum_elements(s, sum);
         if (run->features.energy) sum[ELASTIC] = collect(s);
@@ -278,24 +285,16 @@ void energy_now(struct sim *s, struct energy_sums *out)
         sum[REMOVED] = e->total.removed;
         integer_sums_add(&sum[SUMS_GRAVITY], e->total.wrapped, 1);
     }
-    for (int k = 0; k < N; k++)
+    for (int k = 0; k < N_SUM; k++)
         sum[k].bad += !e->program || (k >= SUMS_ELEMENT && !run->features.energy);
-    integer_sums_all(s->comm, sum, N, v);
-    const double *taken = v + TOTALS;
-    *out = (struct energy_sums){v[SUMS_KINETIC], v[SUMS_ROTATIONAL], v[SUMS_GRAVITY], v[ELASTIC],
-        taken[LEDGER_NORMAL], taken[LEDGER_TANGENTIAL], taken[LEDGER_SLIDING],
-        taken[LEDGER_ROLLING], taken[LEDGER_BONDS], taken[LEDGER_WORK], v[REMOVED],
-        {v[SUMS_MOMENTUM], v[SUMS_MOMENTUM + 1], v[SUMS_MOMENTUM + 2]},
-        {v[SUMS_ANGULAR], v[SUMS_ANGULAR + 1], v[SUMS_ANGULAR + 2]}};
-}
-
-static double account(const struct energy_sums *e)
-{
-    return e->kinetic + e->rotational + e->gravity + e->elastic + e->dashpot_n + e->dashpot_t +
-           e->sliding + e->rolling + e->bonds + e->removed - e->wall_work;
+    integer_sums_all(s->comm, sum, N_SUM, v);
+    for (const struct energy_term *term = energy_table; term->name; term++)
+        *energy_terms_at(term, out) = v[term->source];
+    memcpy(out->momentum, v + SUMS_MOMENTUM, sizeof out->momentum);
+    memcpy(out->angular, v + SUMS_ANGULAR, sizeof out->angular);
 }
 
 double energy_balance(const struct energy_sums *start, const struct energy_sums *now)
 {
-    return account(now) - account(start);
+    return energy_terms_balance(energy_table, start, now);
 }

@@ -14,6 +14,7 @@
 
 #include "kernels/contact/ledger.h"
 #include "kernels/common/sums.h"
+#include "run/energy_terms.h"
 
 struct device;
 struct sim;
@@ -23,9 +24,10 @@ struct energy; /* totals since the start, on this rank */
  * because nothing measures the energy (elastic, losses, wall_work, removed), because the device has
  * no double precision (all), or because some term was NaN or beyond measure. */
 struct energy_sums {
-    double kinetic, rotational, gravity, elastic;         /* [J] */
-    double dashpot_n, dashpot_t, sliding, rolling, bonds; /* [J] taken by contacts */
-    double wall_work;                                     /* [J] given by moving walls */
+    double kinetic, rotational, gravity, elastic; /* [J] */
+    /* [J] taken by contacts */
+    double dashpot_normal, dashpot_tangential, sliding, rolling, bonds;
+    double wall_work; /* [J] given by moving walls */
     /* [J] that left with elements, and springs whose element or wall went */
     double removed;
     /* [kg m/s]; [J s] about the origin of coordinates */
@@ -53,6 +55,9 @@ void energy_restore(struct sim *s, const int64_t total[ENERGY_TOTALS][SUMS_WIDTH
 
 /* The state on the device is an observed one. Collective. */
 void energy_now(struct sim *s, struct energy_sums *out);
+
+/* The terms in the order of columns and of the record: energy_terms.h, over struct energy_sums. */
+extern const struct energy_term energy_table[];
 
 /* E_kin + E_rot + E_el + E_g + losses + removed - wall_work, now minus start [J]: zero in exact
  * arithmetic and with an infinitely small step. */

@@ -85,7 +85,8 @@ void particle_check_limit(struct sim *s);
 int64_t particle_number(const struct sim *s);
 int64_t particle_owned(const struct sim *s);
 void particle_frame(struct sim *s, int64_t index);
-int particle_measure_columns(enum measure_kind kind, const struct series_column **column);
+int particle_measure_columns(const struct sim *s, const struct measure *measure,
+    struct series_column column[STEP_MEASURE_COLUMNS]);
 void particle_measure(struct sim *s, const bool *due, double (*value)[STEP_MEASURE_COLUMNS]);
 /* An element has left the run at x [m]: counts whose region holds the place go on counting it. Not
  * collective. */

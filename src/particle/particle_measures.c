@@ -7,34 +7,15 @@
 
 #include "energy.h"
 #include "comm/fail.h"
+#include "run/measures.h"
 #include "run/output.h"
+#include "scene/measure_columns.h"
 
-int particle_measure_columns(enum measure_kind kind, const struct series_column **column)
-{
-    static const struct series_column count[] = {
-        {"count", "1"}, {"present", "1"}, {"removed", "1"}};
-    static const struct series_column energy[] = {{"kinetic", "J"}, {"rotational", "J"},
-        {"gravity", "J"}, {"elastic", "J"}, {"dashpot_normal", "J"}, {"dashpot_tangential", "J"},
-        {"sliding", "J"}, {"rolling", "J"}, {"bonds", "J"}, {"wall_work", "J"}, {"removed", "J"},
-        {"balance", "J"}};
-    static const struct series_column momentum[] = {{"p_x", "N s"}, {"p_y", "N s"}, {"p_z", "N s"},
-        {"l_x", "N m s"}, {"l_y", "N m s"}, {"l_z", "N m s"}};
-    static const struct series_column wall[] = {
-        {"force_x", "N"}, {"force_y", "N"}, {"force_z", "N"}, {"contacts", "1"}};
-    static const struct series_column probe[] = {{"x", "m"}, {"y", "m"}, {"z", "m"}, {"v_x", "m/s"},
-        {"v_y", "m/s"}, {"v_z", "m/s"}, {"w_x", "rad/s"}, {"w_y", "rad/s"}, {"w_z", "rad/s"}};
-    switch (kind) {
-    case MEASURE_COUNT: *column = count; return 3;
-    case MEASURE_ENERGY: *column = energy; return 12;
-    case MEASURE_MOMENTUM: *column = momentum; return 6;
-    case MEASURE_WALL_FORCE: *column = wall; return 4;
-    case MEASURE_PROBE:
-    case MEASURE_STRESS_MAX:
-    case MEASURE_BROKEN: break; /* of method lattice */
-    }
-    *column = probe;
-    return 9;
-}
+/* What several measures of a step look at. */
+struct view {
+    const struct particles_host *host; /* NULL where no due measure asks for it */
+    struct energy_sums energy;         /* likewise */
+};
 
 static bool holds(const struct measure *m, const double x[3])
 {
@@ -50,8 +31,9 @@ void particle_left(struct sim *s, const double x[3])
             s->particle->left[i]++;
 }
 
-static void measure_count(struct sim *s, int i, const struct particles_host *h, double *value)
+static void measure_count(struct sim *s, int i, const struct view *view, double *value)
 {
+    const struct particles_host *h = view->host;
     int64_t n[2] = {0, s->particle->left[i]};
     for (int64_t k = 0; k < h->n; k++) n[0] += holds(&s->scene->measure[i], h->x + 3 * k);
     comm_sum_i64(s->comm, n, 2);
@@ -62,8 +44,10 @@ static void measure_count(struct sim *s, int i, const struct particles_host *h, 
 
 /* Force of the elements on a wall: minus the sum of the result records, in units of 2^-60 N times
  * 2^20 so that the order does not matter. */
-static void measure_wall(struct sim *s, int wall, double *value)
+static void measure_wall(struct sim *s, int i, const struct view *view, double *value)
 {
+    int wall = s->scene->measure[i].wall;
+    (void)view;
     struct particle_run *run = s->particle;
     const struct wall_contacts *w = run->wall_contacts;
     int64_t sum[7] = {0};
@@ -93,8 +77,10 @@ static void measure_wall(struct sim *s, int wall, double *value)
 }
 
 /* The element's owner gives the bits, the others zeros; NaN once it has left the run. */
-static void measure_probe(struct sim *s, int64_t gid, const struct particles_host *h, double *value)
+static void measure_probe(struct sim *s, int i, const struct view *view, double *value)
 {
+    const struct particles_host *h = view->host;
+    int64_t gid = s->scene->measure[i].element;
     int64_t bits[10] = {0};
     for (int64_t k = 0; k < h->n; k++) {
         if (h->gid[k] != gid) continue;
@@ -106,20 +92,6 @@ static void measure_probe(struct sim *s, int64_t gid, const struct particles_hos
     comm_sum_i64(s->comm, bits, 10);
     memcpy(value, bits, 9 * sizeof(double));
     for (int k = 0; k < 9 && !bits[9]; k++) value[k] = NAN;
-}
-
-static void measure_energy(
-    struct sim *s, enum measure_kind kind, const struct energy_sums *e, double *value)
-{
-    if (kind == MEASURE_MOMENTUM) {
-        memcpy(value, e->momentum, sizeof e->momentum);
-        memcpy(value + 3, e->angular, sizeof e->angular);
-        return;
-    }
-    const double all[] = {e->kinetic, e->rotational, e->gravity, e->elastic, e->dashpot_n,
-        e->dashpot_t, e->sliding, e->rolling, e->bonds, e->wall_work, e->removed,
-        energy_balance(&s->particle->energy_start, e)};
-    memcpy(value, all, sizeof all);
 }
 
 /* Energy from nowhere: the budget is off by more than ten times of what was there at the start and
@@ -141,32 +113,56 @@ static void check_energy(struct sim *s, const struct energy_sums *e)
             wrong, in);
 }
 
+static void measure_energy(struct sim *s, int i, const struct view *view, double *value)
+{
+    (void)i;
+    check_energy(s, &view->energy);
+    energy_terms_columns(energy_table, &s->particle->energy_start, &view->energy, value);
+}
+
+static void measure_momentum(struct sim *s, int i, const struct view *view, double *value)
+{
+    (void)s;
+    (void)i;
+    memcpy(value, view->energy.momentum, sizeof view->energy.momentum);
+    memcpy(value + 3, view->energy.angular, sizeof view->energy.angular);
+}
+
+/* The measures of the method, a row each; those of the other method alone are empty. */
+static const struct measure_row {
+    const struct scene_item *column;
+    bool by_element, by_energy; /* what it needs of struct view */
+    void (*measure)(struct sim *s, int i, const struct view *view, double *value);
+} measure_row[] = {
+    [MEASURE_COUNT] = {measure_columns_count, true, false, measure_count},
+    [MEASURE_ENERGY] = {measure_columns_energy_particles, false, true, measure_energy},
+    [MEASURE_MOMENTUM] = {measure_columns_momentum, false, true, measure_momentum},
+    [MEASURE_WALL_FORCE] = {measure_columns_wall_force, false, false, measure_wall},
+    [MEASURE_PROBE] = {measure_columns_probe_particles, true, false, measure_probe},
+};
+
+int particle_measure_columns(const struct sim *s, const struct measure *measure,
+    struct series_column column[STEP_MEASURE_COLUMNS])
+{
+    (void)s;
+    return measures_columns(column, 0, measure_row[measure->kind].column);
+}
+
 void particle_measure(struct sim *s, const bool *due, double (*value)[STEP_MEASURE_COLUMNS])
 {
     struct particle_run *run = s->particle;
-    struct particles_host *h = NULL;
-    struct energy_sums energy;
-    bool have_energy = false;
+    struct particles_host *host = NULL;
+    struct view view = {NULL};
+    bool by_element = false, by_energy = false;
     for (int i = 0; i < s->scene->n_measure; i++) {
-        const struct measure *what = &s->scene->measure[i];
-        if (!due[i]) continue;
-        bool by_element = what->kind == MEASURE_COUNT || what->kind == MEASURE_PROBE;
-        if (by_element && !h)
-            h = particles_download(s->dev, run->particles, &run->features, s->scene, run->first);
-        if ((what->kind == MEASURE_ENERGY || what->kind == MEASURE_MOMENTUM) && !have_energy) {
-            energy_now(s, &energy);
-            have_energy = true;
-            if (what->kind == MEASURE_ENERGY) check_energy(s, &energy);
-        }
-        switch (what->kind) {
-        case MEASURE_COUNT: measure_count(s, i, h, value[i]); break;
-        case MEASURE_WALL_FORCE: measure_wall(s, what->wall, value[i]); break;
-        case MEASURE_PROBE: measure_probe(s, what->element, h, value[i]); break;
-        case MEASURE_ENERGY:
-        case MEASURE_MOMENTUM: measure_energy(s, what->kind, &energy, value[i]); break;
-        case MEASURE_STRESS_MAX:
-        case MEASURE_BROKEN: break; /* of method lattice */
-        }
+        by_element |= due[i] && measure_row[s->scene->measure[i].kind].by_element;
+        by_energy |= due[i] && measure_row[s->scene->measure[i].kind].by_energy;
     }
-    particles_host_free(h);
+    if (by_energy) energy_now(s, &view.energy);
+    if (by_element)
+        host = particles_download(s->dev, run->particles, &run->features, s->scene, run->first);
+    view.host = host;
+    for (int i = 0; i < s->scene->n_measure; i++)
+        if (due[i]) measure_row[s->scene->measure[i].kind].measure(s, i, &view, value[i]);
+    particles_host_free(host);
 }

@@ -74,31 +74,9 @@ void particle_report_energy(struct sim *s, struct report *r, bool observed)
 {
     struct particle_run *run = s->particle;
     struct energy_sums now = run->energy_start;
+    bool measured = run->features.energy;
     if (observed) energy_now(s, &now);
-    const struct energy_sums *both[] = {&run->energy_start, &now};
-    static const char *const name[] = {"start", "end"};
-    report_begin(r, "energy");
-    for (int k = 0; k < 2; k++) {
-        const struct energy_sums *e = both[k];
-        report_begin(r, name[k]);
-        report_number(r, "kinetic", e->kinetic);
-        report_number(r, "rotational", e->rotational);
-        report_number(r, "gravity", e->gravity);
-        if (run->features.energy) {
-            report_number(r, "elastic", e->elastic);
-            report_number(r, "dashpot_normal", e->dashpot_n);
-            report_number(r, "dashpot_tangential", e->dashpot_t);
-            report_number(r, "sliding", e->sliding);
-            report_number(r, "rolling", e->rolling);
-            report_number(r, "bonds", e->bonds);
-            report_number(r, "wall_work", e->wall_work);
-            report_number(r, "removed", e->removed);
-        }
-        report_end(r);
-    }
-    report_number(r, "balance_error",
-        run->features.energy && observed ? energy_balance(&run->energy_start, &now) : (double)NAN);
-    report_end(r);
+    energy_terms_report(energy_table, r, &run->energy_start, &now, measured, measured && observed);
     report_numbers(r, "momentum", now.momentum, 3);
 }
 

@@ -11,14 +11,20 @@ struct measures {
     struct series **series;
 };
 
+int measures_columns(struct series_column *column, int n, const struct scene_item *items)
+{
+    for (; items->name; items++) column[n++] = (struct series_column){items->name, items->unit};
+    return n;
+}
+
 struct measures *measures_create(struct sim *s)
 {
     struct measures *m = fail_alloc(sizeof *m);
     m->n = s->scene->n_measure;
     m->series = fail_alloc((size_t)m->n * sizeof *m->series);
     for (int i = 0; i < m->n; i++) {
-        const struct series_column *column;
-        int n = s->ops->measure_columns(s->scene->measure[i].kind, &column);
+        struct series_column column[STEP_MEASURE_COLUMNS];
+        int n = s->ops->measure_columns(s, &s->scene->measure[i], column);
         const char *name = s->scene->measure[i].name;
         m->series[i] = s->from ? series_resume(s->comm, s->options->dir, name, column, n,
                                      (double)s->from->step * s->dt)
@@ -30,8 +36,8 @@ struct measures *measures_create(struct sim *s)
 void measures_check(struct sim *s)
 {
     for (int i = 0; i < s->scene->n_measure; i++) {
-        const struct series_column *column;
-        int n = s->ops->measure_columns(s->scene->measure[i].kind, &column);
+        struct series_column column[STEP_MEASURE_COLUMNS];
+        int n = s->ops->measure_columns(s, &s->scene->measure[i], column);
         series_check(s->comm, s->options->dir, s->scene->measure[i].name, column, n);
     }
 }

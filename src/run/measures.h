@@ -4,9 +4,13 @@
 #define DEMOCLES_MEASURES_H
 
 #include "results/series.h"
+#include "scene/scene_item.h"
 #include "sim.h"
 
 struct measures;
+
+/* Adds columns to the n that are there; returns how many there are then. */
+int measures_columns(struct series_column *column, int n, const struct scene_item *items);
 
 /* Whether the files that are there are those of the measures; of a run that goes on, before it
  * changes anything. Ends the run where they are not. */

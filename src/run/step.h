@@ -33,7 +33,7 @@
 #include "results/series.h"
 
 enum {
-    STEP_MEASURE_COLUMNS = 16, /* most columns of a measure besides the time */
+    STEP_MEASURE_COLUMNS = 32, /* most columns of a measure besides the time */
     STEP_LAUNCHES = 16,        /* most kernels that a method names */
 };
 
@@ -85,8 +85,9 @@ struct step_ops {
     /* Output of an observed step; collective. */
     int64_t (*n_element)(const struct sim *s); /* of all ranks, now; not collective */
     void (*frame)(struct sim *s, int64_t index);
-    /* how many */
-    int (*measure_columns)(enum measure_kind kind, const struct series_column **column);
+    /* of the file of a measure, besides the time; returns how many */
+    int (*measure_columns)(const struct sim *s, const struct measure *measure,
+        struct series_column column[STEP_MEASURE_COLUMNS]);
     /* of the scene's measures that are due */
     void (*measure)(struct sim *s, const bool *due, double (*value)[STEP_MEASURE_COLUMNS]);
     bool (*digest)(struct sim *s, uint64_t *digest); /* false: NaN in the state */

@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "measure_columns.h"
 #include "output_fields.h"
 #include "scene.h"
 #include "scene_keys_shapes.h"

@@ -147,11 +147,11 @@ static void check_totals(void)
         energy_collect(s);
     }
     energy_now(s, &e);
-    CHECK(e.dashpot_n == 3 * 1024.0 * N_PAIR);
+    CHECK(e.dashpot_normal == 3 * 1024.0 * N_PAIR);
     CHECK(e.sliding == 0); /* exactly, in whatever order */
     CHECK(e.rolling == 3 * -0x1.23456789p-40);
     CHECK(e.bonds == -0x1.8p-79);
-    CHECK(e.wall_work == 0 && e.dashpot_t == 0 && e.elastic == 0 && e.removed == 0);
+    CHECK(e.wall_work == 0 && e.dashpot_tangential == 0 && e.elastic == 0 && e.removed == 0);
     free(ledger);
     account_free(s);
 }

@@ -1,0 +1,52 @@
+#include "measure_columns.h"
+
+#include <stddef.h>
+
+#define END                                                                                        \
+    {                                                                                              \
+        NULL, NULL, NULL                                                                           \
+    }
+#define ENERGY(name, sign, known, source, text) {#name, "J", text},
+#define BALANCE                                                                                    \
+    {                                                                                              \
+        "balance", "J",                                                                            \
+            "sum of the terms less what was given, less the same at the start: 0 but "             \
+            "for errors of the time step"                                                          \
+    }
+
+const struct scene_item measure_columns_count[] = {
+    {"count", "1", "elements that are there and those that have left the run from there"},
+    {"present", "1", "elements that are there"},
+    {"left", "1", "elements that have left the run from there"}, END};
+
+const struct scene_item measure_columns_energy_particles[] = {
+    MEASURE_ENERGY_PARTICLES(ENERGY) BALANCE, END};
+
+const struct scene_item measure_columns_energy_lattice[] = {
+    MEASURE_ENERGY_LATTICE(ENERGY) BALANCE, END};
+
+const struct scene_item measure_columns_momentum[] = {{"p_x", "N s", "momentum along x"},
+    {"p_y", "N s", "along y"}, {"p_z", "N s", "along z"},
+    {"l_x", "N m s", "angular momentum about the origin, about x"}, {"l_y", "N m s", "about y"},
+    {"l_z", "N m s", "about z"}, END};
+
+const struct scene_item measure_columns_wall_force[] = {
+    {"force_x", "N", "force of the elements on the wall along x"}, {"force_y", "N", "along y"},
+    {"force_z", "N", "along z"}, {"contacts", "1", "contacts with a force"}, END};
+
+const struct scene_item measure_columns_probe_particles[] = {{"x", "m", "place of the centre"},
+    {"y", "m", ""}, {"z", "m", ""}, {"v_x", "m/s", "velocity"}, {"v_y", "m/s", ""},
+    {"v_z", "m/s", ""}, {"w_x", "rad/s", "angular velocity"}, {"w_y", "rad/s", ""},
+    {"w_z", "rad/s", ""}, END};
+
+const struct scene_item measure_columns_probe_lattice[] = {{"x", "m", "place of the centre"},
+    {"y", "m", ""}, {"z", "m", ""}, {"u_x", "m", "displacement"}, {"u_y", "m", ""},
+    {"u_z", "m", ""}, {"v_x", "m/s", "velocity"}, {"v_y", "m/s", ""}, {"v_z", "m/s", ""},
+    {"w_x", "rad/s", "angular velocity"}, {"w_y", "rad/s", ""}, {"w_z", "rad/s", ""}, END};
+
+const struct scene_item measure_columns_stress_max[] = {
+    {"von_mises", "Pa", "largest von Mises stress"},
+    {"x", "m", "place at the start of the cell that has it"}, {"y", "m", ""}, {"z", "m", ""}, END};
+
+const struct scene_item measure_columns_broken[] = {{"tension", "1", "links broken in tension"},
+    {"shear", "1", "in shear"}, {"bending", "1", "in bending"}, {"twist", "1", "in twist"}, END};
