@@ -6,9 +6,9 @@
 #include "lattice.h"
 #include "run/energy_terms.h"
 
-/* NaN: not known, because nothing asks for it (work, link_damping, mass_damping, released: features.energy),
- * because the device has no double precision (all), or because some term was NaN or beyond measure
- * (kernels/common/sums.h). */
+/* NaN: not known, because nothing asks for it (work, link_damping, mass_damping, released:
+ * features.energy), because the device has no double precision (all), or because some term was NaN
+ * or beyond measure (kernels/common/sums.h). */
 struct lattice_energy {
     double kinetic, rotational; /* [J] */
     double gravity;             /* [J], 0 where cells began */

@@ -2,6 +2,7 @@
 #include "lattice_method.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 #include "comm/fail.h"
@@ -31,11 +32,57 @@ static int64_t nearest(const struct lattice_cells *cells, const double at[3])
     return best;
 }
 
+/* What the fields of a probe add to the columns that all probes have. */
+static const struct probe_part {
+    const char *field;
+    bool in_finite, in_small; /* kinds of rotation under which it is that */
+    const struct scene_item *column;
+    size_t at; /* offset of the array in struct lattice_state, NULL where it is not asked for */
+    int stride;
+} probe_part[] = {
+    {"rotation", true, false, measure_columns_rotation, offsetof(struct lattice_state, turn), 4},
+    {"rotation", false, true, measure_columns_small_rotation, offsetof(struct lattice_state, turn),
+        4},
+    {"stress", true, true, measure_columns_stress, offsetof(struct lattice_state, stress), 9},
+    {"von_mises", true, true, measure_columns_von_mises, offsetof(struct lattice_state, von_mises),
+        1},
+};
+enum { N_PROBE_PART = sizeof probe_part / sizeof *probe_part, PROBE_COLUMNS = 12 };
+
+/* The parts of a probe in the order of its fields; returns how many. */
+static int probe_parts(
+    const struct sim *s, const struct measure *measure, const struct probe_part *part[N_PROBE_PART])
+{
+    bool is_finite = s->scene->lattice.rotation == ROTATION_FINITE;
+    int n = 0;
+    for (int i = 0; i < measure->n_field; i++)
+        for (int k = 0; k < N_PROBE_PART; k++)
+            if (!strcmp(probe_part[k].field, measure->field[i]) &&
+                (is_finite ? probe_part[k].in_finite : probe_part[k].in_small))
+                part[n++] = &probe_part[k];
+    return n;
+}
+
+/* Cell i's numbers of the parts, as bits. */
+static void probe_more(const struct sim *s, const struct measure *measure,
+    const struct lattice_state *t, int64_t i, int64_t *bits)
+{
+    const struct probe_part *part[N_PROBE_PART];
+    int n_part = probe_parts(s, measure, part), n = 0;
+    for (int k = 0; k < n_part; k++) {
+        const double *all;
+        memcpy(&all, (const char *)t + part[k]->at, sizeof all);
+        for (int c = 0; part[k]->column[c].name; c++)
+            memcpy(&bits[n++], &all[i * part[k]->stride + c], sizeof *all);
+    }
+}
+
 /* The cell's owner gives the bits, the others zeros. */
 static void measure_probe(struct sim *s, int m, const struct view *view, double *value)
 {
     const struct lattice_state *t = view->state;
-    int64_t gid = nearest(s->lattice->cells, s->scene->measure[m].at), bits[12] = {0};
+    int64_t gid = nearest(s->lattice->cells, s->scene->measure[m].at),
+            bits[STEP_MEASURE_COLUMNS] = {0};
     for (int64_t i = 0; i < t->n; i++) {
         if (t->gid[i] != gid) continue;
         double x[3];
@@ -44,8 +91,9 @@ static void measure_probe(struct sim *s, int m, const struct view *view, double 
         memcpy(bits + 3, t->u[i], sizeof x);
         memcpy(bits + 6, t->v[i], sizeof x);
         memcpy(bits + 9, t->w[i], sizeof x);
+        probe_more(s, &s->scene->measure[m], t, i, bits + PROBE_COLUMNS);
     }
-    comm_sum_i64(s->comm, bits, 12);
+    comm_sum_i64(s->comm, bits, STEP_MEASURE_COLUMNS);
     memcpy(value, bits, sizeof bits);
 }
 
@@ -105,8 +153,11 @@ static const struct measure_row {
 int lattice_method_measure_columns(const struct sim *s, const struct measure *measure,
     struct series_column column[STEP_MEASURE_COLUMNS])
 {
-    (void)s;
-    return measures_columns(column, 0, measure_row[measure->kind].column);
+    int n = measures_columns(column, 0, measure_row[measure->kind].column);
+    const struct probe_part *part[N_PROBE_PART];
+    int n_part = probe_parts(s, measure, part); /* only a probe has fields */
+    for (int k = 0; k < n_part; k++) n = measures_columns(column, n, part[k]->column);
+    return n;
 }
 
 void lattice_method_measure(struct sim *s, const bool *due, double (*value)[STEP_MEASURE_COLUMNS])

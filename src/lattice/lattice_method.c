@@ -17,40 +17,21 @@
 /* Steps to measure the speed of the ranks by, and those before. */
 enum { MEASURED_STEPS = 20, FIRST_STEPS = 5 };
 
-static bool is_listed(char *const *list, int n, const char *word)
-{
-    for (int k = 0; k < n; k++)
-        if (!strcmp(list[k], word)) return true;
-    return false;
-}
-
 static bool wants_stress(const struct scene *scene)
 {
     bool wants = lattice_fields_need_stress(scene->output.field, scene->output.n_field);
-    for (int m = 0; m < scene->n_measure; m++)
-        wants |= scene->measure[m].kind == MEASURE_STRESS_MAX;
-    return wants;
-}
-
-/* What the scene language knows and this program does not do yet. */
-static void refuse(const struct scene *scene, struct scene_errors *errors)
-{
     for (int m = 0; m < scene->n_measure; m++) {
-        static const char *const later[] = {"rotation", "stress", "von_mises"};
         const struct measure *what = &scene->measure[m];
-        for (int k = 0; k < 3; k++)
-            if (is_listed(what->field, what->n_field, later[k]))
-                scene_errors_add(errors,
-                    "%s:%d: measure '%s': a probe of %s is not in this version", scene->path,
-                    what->line, what->name, later[k]);
+        wants |= what->kind == MEASURE_STRESS_MAX ||
+                 lattice_fields_need_stress(what->field, what->n_field);
     }
+    return wants;
 }
 
 static void read(struct sim *s)
 {
     struct scene_errors errors = {NULL, 0};
     s->lattice = fail_alloc(sizeof *s->lattice);
-    refuse(s->scene, &errors);
     s->lattice->cells = lattice_cells_create(s->scene, &errors);
     scene_report_errors(s->comm, &errors);
     s->n_first = s->lattice->cells->n;
@@ -230,8 +211,8 @@ static void report_energy(struct sim *s, struct report *r, bool observed)
     struct lattice_energy now = s->lattice->energy_start;
     bool by_work = s->lattice->lattice->features.energy;
     if (observed) lattice_energy_now(s->lattice->account, &now);
-    energy_terms_report(lattice_energy_table, r, &s->lattice->energy_start, &now, by_work,
-        by_work && observed);
+    energy_terms_report(
+        lattice_energy_table, r, &s->lattice->energy_start, &now, by_work, by_work && observed);
     report_numbers(r, "momentum", now.momentum, 3);
     report_broken(s, r);
 }

@@ -50,3 +50,28 @@ const struct scene_item measure_columns_stress_max[] = {
 
 const struct scene_item measure_columns_broken[] = {{"tension", "1", "links broken in tension"},
     {"shear", "1", "in shear"}, {"bending", "1", "in bending"}, {"twist", "1", "in twist"}, END};
+
+const struct scene_item measure_columns_rotation[] = {{"rotation_w", "1", "quaternion"},
+    {"rotation_x", "1", ""}, {"rotation_y", "1", ""}, {"rotation_z", "1", ""}, END};
+
+const struct scene_item measure_columns_small_rotation[] = {
+    {"rotation_x", "rad", "small rotation about x"}, {"rotation_y", "rad", "about y"},
+    {"rotation_z", "rad", "about z"}, END};
+
+const struct scene_item measure_columns_stress[] = {{"stress_xx", "Pa", "stress"},
+    {"stress_xy", "Pa", ""}, {"stress_xz", "Pa", ""}, {"stress_yx", "Pa", ""},
+    {"stress_yy", "Pa", ""}, {"stress_yz", "Pa", ""}, {"stress_zx", "Pa", ""},
+    {"stress_zy", "Pa", ""}, {"stress_zz", "Pa", ""}, END};
+
+const struct scene_item measure_columns_von_mises[] = {
+    {"von_mises", "Pa", "von Mises' equivalent stress"}, END};
+
+const struct scene_item measure_columns_probe_fields[] = {
+    {"displacement", "m", "columns u_x, u_y, u_z, of every probe"},
+    {"rotation", "1",
+        "columns rotation_w, rotation_x ...: quaternion; with lattice.rotation: small three angles "
+        "[rad]"},
+    {"velocity", "m/s", "columns v_x, v_y, v_z, of every probe"},
+    {"angular_velocity", "rad/s", "columns w_x, w_y, w_z, of every probe"},
+    {"stress", "Pa", "columns stress_xx, stress_xy ... stress_zz, in the world's axes"},
+    {"von_mises", "Pa", "column von_mises: von Mises' equivalent stress"}, END};

@@ -44,4 +44,8 @@ extern const struct scene_item measure_columns_count[], measure_columns_energy_p
     measure_columns_probe_particles[], measure_columns_probe_lattice[],
     measure_columns_stress_max[], measure_columns_broken[];
 
+/* What the fields of a probe of a cell add to its columns; and what they are, by their names. */
+extern const struct scene_item measure_columns_rotation[], measure_columns_small_rotation[],
+    measure_columns_stress[], measure_columns_von_mises[], measure_columns_probe_fields[];
+
 #endif

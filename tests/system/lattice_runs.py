@@ -152,8 +152,32 @@ class Lattice(parallel_runs.Case):
         self.assertLess(abs(turned - expected), 5e-3)
         self.assertEqual(sorted(last.field("id").tolist()), list(range(8)))
 
+    def test_probes(self):
+        """A probe's rotation and stress are those of the frame at the same cell, and have the same bits on any number of ranks."""
+        fields = ["von_mises", "rotation", "stress"]
+        for rotation, turn in (("finite", "wxyz"), ("small", "xyz")):
+            scene, alone = block("leapfrog"), None
+            scene.update(lattice={"rotation": rotation}, output={"every": 0, "fields": [*fields, "id"]})
+            scene["measure"][0].update(every=1e-9, probe={"at": [0.33, 0, 0], "fields": [*fields, "velocity"]})
+            for n in (1, 3):
+                with self.subTest(rotation=rotation, ranks=n):
+                    run = self.good_run(self.put(scene), n, "--steps", "20")
+                    with open(os.path.join(run.dir, "end.csv")) as file:
+                        titles, *rows = csv.reader(file)
+                    self.assertEqual([title.split()[0] for title in titles[13:]],
+                                     ["von_mises", *("rotation_" + c for c in turn), *(f"stress_{a}{b}" for a in "xyz" for b in "xyz")])
+                    for path, row in zip(run.frames(), (rows[0], rows[-1])):
+                        frame, found = frames.Frame(path), numpy.array([float(v) for v in row])
+                        cell = numpy.abs(frame.points - [0.325, 0.005, 0.005]).sum(axis=1).argmin()
+                        shown = [frame.field("von_mises")[cell], *frame.field("rotation")[cell][:len(turn)], *frame.field("stress")[cell]]
+                        self.assertEqual(found[13:].tolist(), [float(v) for v in shown])
+                        self.assertEqual((frame.time, len(found)), (found[0], 13 + 10 + len(turn)))
+                    self.assertGreater(abs(found[13:]).min(), 0)
+                    alone = alone or run.series()
+                    self.assertEqual(run.series(), alone)
+
     def test_refused(self):
-        """A step over the limit ends the run with exit code 5 at once; what this version does not do is named."""
+        """A step over the limit ends the run with exit code 5 at once."""
         over = plate(1, step=1e-5)
         run = self.run_scene(self.put(over), 2)
         self.assertEqual(run.code, 5)
