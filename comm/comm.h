@@ -40,8 +40,8 @@ void comm_node_barrier(const struct comm *comm);
 /* bit-or over the ranks of this node, in place */
 void comm_node_or(const struct comm *comm, void *bits, size_t bytes);
 
-/* Between two looks at whether something has arrived: sleeps for some microseconds where `naps`,
- * else lets others run who wait for this core. */
+/* Backs off between two polls for messages: sleeps for some microseconds if `naps`, else yields the
+ * core to whoever waits for it. */
 void comm_pause(const struct comm *comm);
 /* Whether comm_pause sleeps from now on. */
 void comm_set_naps(struct comm *comm, bool naps);

@@ -1,10 +1,10 @@
 /* Numbers that host and device share. The laws (law_*.h) are written in these types alone, so that
  * the very same text runs on both.
  *
- * real   arithmetic of contacts and velocities: float or double, by REAL_IS_FLOAT (0 or 1, default
- * 0)
+ * real   arithmetic of contacts and velocities: float or double, by REAL_IS_FLOAT (0 or 1,
+ *        default 0)
  * preal  positions and their differences: by POSITION_IS_FLOAT; `mixed` precision is real = float,
- * preal = double
+ *        preal = double
  *
  * Only + - * / sqrt fma are used on state: they are correctly rounded (division and sqrt in float
  * where the device says so), so bits do not depend on the vendor. No contraction: fma is written

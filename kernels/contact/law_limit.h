@@ -7,10 +7,9 @@
  *     |u|^2 <= (sum of weights) (sum of |part|^2/weight),
  * so that K and C are below block diagonal matrices, for element i with w = 1/m and p = w_i + (w_i
  * w_j)^(1/2) (wall: w_i) of each contact
- *     T_i = sum p [k_n n n^T + (1 + 2.5 s) k_t (1 - n n^T)]                                        
- *        translation
- *     R_i = sum {p (1 + 2.5 s)/s k_t (1 - n n^T) + q k_r (1 - n n^T)},  q = 1/I_i + (I_i
- *       I_j)^(-1/2)     rotation
+ *     translation  T_i = sum p [k_n n n^T + (1 + 2.5 s) k_t (1 - n n^T)]
+ *     rotation     R_i = sum {p (1 + 2.5 s)/s k_t (1 - n n^T) + q k_r (1 - n n^T)}
+ * with q = 1/I_i + (I_i I_j)^(-1/2)
  * (the sums with gamma in place of k for C), and dt^2 a + 2 dt b <= 4 with a, b their largest
  * eigenvalues suffices. Any s > 0 is allowed, the same for all contacts; s = 1 is exact for two
  * equal spheres, limit_share is better in beds. The weights m^(-1/2) in place of 1/m keep the bound

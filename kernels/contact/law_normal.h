@@ -1,26 +1,24 @@
 /* Normal force: linear spring or Hertz, each with a dashpot that gives one restitution at all
  * speeds.
  *
- * Linear  F_n = k_n delta + gamma_n v_n,                       gamma_n = 2 z (k_n m*)^(1/2)
- * Hertz   F_n = K delta^(3/2) + gamma delta^(1/4) v_n,         gamma = 5^(1/2) z (K m*)^(1/2)  
- * (Antypov and Elliott 2011, EPL 94, 50004)
+ * Linear  F_n = k_n delta + gamma_n v_n,                gamma_n = 2 z (k_n m*)^(1/2)
+ * Hertz   F_n = K delta^(3/2) + gamma delta^(1/4) v_n,  gamma = 5^(1/2) z (K m*)^(1/2)
+ *         (Antypov and Elliott 2011, EPL 94, 50004)
  * Both are k s delta + gamma s^(1/2) v_n with s = 1 or |delta|^(1/2). Bonded pairs go on to delta <
  * 0, Hertz as an odd function.
  *
  * Second order in dt although v_n is of the half step:
  * - pair-centred dashpot: v_n^{n+1} = v_n - F_n dt/(2 m*), solved for F_n: division by 1 + gamma
  *   dt/(2 m*). Momentum stays exact.
- * - onset weight: the dashpot jumps at delta = 0 (linear), or starts with an infinite slope
- *   (Hertz). The kick at t^{n+1} stands for the time
- *   from dt/2 before to dt/2 after, so the dashpot gets its mean over that time, with a =
- *     delta/(|v_n| dt):
+ * - onset weight: at delta = 0 the dashpot jumps (linear), or starts with an infinite slope
+ *   (Hertz). The kick at t^{n+1} stands for the time from dt/2 before to dt/2 after, so the
+ *   dashpot gets its mean over that time, with a = delta/(|v_n| dt):
  *   linear: the part in contact, clamp(1/2 + a, 0, 1);
- *   Hertz:  the mean of max(delta, 0)^(1/4): for a < 1/2 (4/5) (a + 1/2) (delta + |v_n|
- *     dt/2)^(1/4), later delta^(1/4) (1 - 1/(128 a^2) - ...).
+ *   Hertz:  the mean of max(delta, 0)^(1/4): for a < 1/2
+ *           (4/5) (a + 1/2) (delta + |v_n| dt/2)^(1/4), later delta^(1/4) (1 - 1/(128 a^2) - ...).
  *           The latter is written without a division, (1 - 0.011 (2 - a)^4) for a < 2, and 4/5 is
- *             taken as 0.792: with these two numbers the
- *           sum over the steps of a linear onset equals the integral within 0.005 steps at any
- *             phase (0.32 without the weight).
+ *           taken as 0.792: with these two numbers the sum over the steps of a linear onset equals
+ *           the integral within 0.005 steps at any phase (0.32 without the weight).
  *   So the dashpot acts up to |v_n| dt/2 before the touch. A bond has passed its onset. */
 #ifndef DEMOCLES_LAW_NORMAL_H
 #define DEMOCLES_LAW_NORMAL_H

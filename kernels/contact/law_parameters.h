@@ -7,8 +7,8 @@
  *
  * One set of members serves both normal laws. With s = 1 (linear) or s = delta^(1/2) (Hertz), and
  * s^(1/2) = 1 or delta^(1/4):
- *     spring k_n s delta, normal dashpot gamma_n s^(1/2), tangential spring k_t s, tangential
- *       dashpot gamma_t s^(1/2), rolling spring k_r s.
+ *     spring k_n s delta, normal dashpot gamma_n s^(1/2),
+ *     tangential spring k_t s, tangential dashpot gamma_t s^(1/2), rolling spring k_r s.
  * Knows no scene and no element. All WITH_ flags must be defined, 0 or 1. */
 #ifndef DEMOCLES_LAW_PARAMETERS_H
 #define DEMOCLES_LAW_PARAMETERS_H

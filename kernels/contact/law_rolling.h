@@ -2,11 +2,10 @@
  * - w_j in the tangent plane.
  *
  * CDT   M = -L w_r/|w_r|, L = mu_r R* F_n (Ai et al. 2011, Powder Technol. 206, 269). It would
- * chatter about zero; here it is at most what stops
- *       the relative spin of the two free bodies in one step, M = -w_r/(dt (1/I_i + 1/I_j)).
- * EPSD  M = -k_r theta - C_r w_r, |k_r theta| <= L, theta the rolling angle, carried and cut like
- * the friction spring (law_slider.h);
- *       the whole of M is kept within L.
+ *       chatter about zero; here it is at most what stops the relative spin of the two free bodies
+ *       in one step, M = -w_r/(dt (1/I_i + 1/I_j)).
+ * EPSD  M = -k_r theta - C_r w_r, |k_r theta| <= L, with theta the rolling angle, which is carried
+ *       and cut like the friction spring (law_slider.h); the whole of M is kept within L.
  * A pair with k_r = 0 takes CDT; mu_r = 0 gives no moment. */
 #ifndef DEMOCLES_LAW_ROLLING_H
 #define DEMOCLES_LAW_ROLLING_H

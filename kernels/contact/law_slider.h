@@ -17,8 +17,8 @@
  * Springs whose stiffness follows the overlap (Mindlin: k = c delta^(1/2)) must not gain energy
  * from that. While the load grows the force is kept, T' = T - (mean k) dx; while it falls the
  * displacement is, T' = T k'/k - k' dx. Storing x = -T/k with r = k/k' this is
- *     x' = keep x + gain dx,   growing (r < 1): keep = r, gain = (mean k)/k';   falling: keep =
- *       gain = 1.
+ *     x' = keep x + gain dx
+ *     growing (r < 1): keep = r, gain = (mean k)/k';  falling: keep = gain = 1.
  * For delta linear in time (mean k)/k' = (2/3)(1 + r + r^2)/(1 + r); (4 + r + r^2)/6 equals it at r
  * = 0 (onset) and to second order at 1. */
 #ifndef DEMOCLES_LAW_SLIDER_H

@@ -7,8 +7,7 @@
  *
  *   kind             a              b                  c                     r              s
  *   WALL_PLANE       point          unit normal m      -                     -              -
- *   WALL_RECTANGLE   centre         unit axis          unit axis             half size (b)  half
- *     size (c)
+ *   WALL_RECTANGLE   centre         unit axis          unit axis             half edge (b)  (c)
  *   WALL_PIPE        start of axis  unit axis          unit, across the axis radius         length
  *   WALL_ROD         start of axis  unit axis          unit, across the axis radius         length
  *   WALL_TRIANGLE    corner         corner             corner                -              -

@@ -4,19 +4,19 @@
  * These are three more quantities that a scheme integrates together with the motion, with rates
  * that depend on the state of an evaluation. So they move where v does: over a kick of s seconds at
  * fixed x by integrals along it, v(s) = v e^(-alpha s) + a (1 - e^(-alpha s))/alpha,
- *     way = integral of v = g v + G a,   lost = integral of alpha v^2 = A v^2 + alpha g^2 v a + C
- *       a^2        (struct lattice_kick)
+ *     way  = integral of v = g v + G a                          (struct lattice_kick)
+ *     lost = integral of alpha v^2 = A v^2 + alpha g^2 v a + C a^2
  * and over a Runge-Kutta stage of weight s by way = s v, lost = s alpha v^2. The balance then
  * closes with the scheme's order, and what rounding does to v stays visible in it. Per degree of
  * freedom, M its mass or inertia, f the force (torque) of links, e that of links without dashpots:
- *     links += (e - f) way         dashpots
- *     mass  += M lost              of a free DOF
- *     work  += load way            of a free DOF: forces, pressures, levers, and M times
- *       accelerations that boundaries add
- *     work  -= (f + weight) way    of a held DOF, way = s times the prescribed velocity: its drive
- *       holds links and gravity, and cancels loads. What
- *                                  goes into the DOF's own kinetic energy is a function of the
- *                                    state, not summed here
+ *     links += (e - f) way       dashpots
+ *     mass  += M lost            of a free DOF
+ *     work  += load way          of a free DOF: forces, pressures, levers, and M times the
+ *                                accelerations that boundaries add
+ *     work  -= (f + weight) way  of a fixed DOF, way = s times the prescribed velocity: its drive
+ *                                carries links and gravity, and cancels loads. What goes into the
+ *                                DOF's own kinetic energy is a function of the state, and is not
+ *                                summed here
  *
  * A traction t.n also moves the face that it acts on, by (h/2) eps, eps = (t.n - p)/(2 G)
  * (law_volume.h, p without dashpots): its work has the rate (h^3/2) t.n d(eps)/dt. By parts, with T

@@ -4,12 +4,12 @@
  *
  * Each load is divided by its limit; a limit that does not exist has the reciprocal 0:
  *     n = f_n/F_n, s = |f_s|/F_s, b = |mom_b|/M_b, t = |mom_t|/M_t
- * BREAK_SUM      max(n, 0) + s + b + t >= 1        forces and moments, as in LAMMPS bpm/rotational
+ * BREAK_SUM      max(n, 0) + s + b + t >= 1: forces and moments, as in LAMMPS bpm/rotational
  * BREAK_LARGEST  max(n, s, b, t) >= 1
- * BREAK_STRESS   n + b >= 1 or s + t >= 1          with F_n = h^2 sigma_c, M_b = h^3 sigma_c/6, F_s
- * = h^2 tau_c, M_t = h^3 tau_c/3: the stress at the
- *                face's edge, as in parallel bonds; the twist by the polar moment h^4/6 that kt
- *                  has. Compression relieves the edge.
+ * BREAK_STRESS   n + b >= 1 or s + t >= 1, with F_n = h^2 sigma_c, M_b = h^3 sigma_c/6,
+ *                F_s = h^2 tau_c, M_t = h^3 tau_c/3: the stress at the face's edge, as in parallel
+ *                bonds; the twist by the polar moment h^4/6 that kt has. Compression relieves the
+ *                edge.
  * The mode is the largest share. With f the force f_n is its part along n. */
 #ifndef DEMOCLES_LAW_BREAK_H
 #define DEMOCLES_LAW_BREAK_H

@@ -9,14 +9,14 @@
  *
  * Small rotations (WITH_TURN = 0), theta [rad]; linear, not objective:
  *     g = u_j - u_i - (h/2) (theta_i + theta_j) x e,   chi = theta_j - theta_i
- *     f = (kn g_a + P, ks g_b, ks g_c),   mom = (kt chi_a, kb chi_b, kb chi_c),   P = (h^2/2)(r_i
- *       p_i + r_j p_j)
+ *     f = (kn g_a + P, ks g_b, ks g_c),   mom = (kt chi_a, kb chi_b, kb chi_c)
+ *     P = (h^2/2)(r_i p_i + r_j p_j)
  *     torque on i: (h/2) e x f + mom,   on j: (h/2) e x f - mom
  *
  * Any rotation (WITH_TURN = 1), unit quaternions q; a = R e, n = (a_i + a_j)/2 (not normalised),
  * (s, v) = q_j q_i^-1 the relative rotation. Energy
- *     U = ks |g|^2/2 + (kn - ks) (n.g)^2/2 + 2 kb |v|^2 + 2 (kt - kb) (v.a_i)^2,   g = u_j - u_i -
- *       (h/2)(d_i + d_j),   d = a - e
+ *     U = ks |g|^2/2 + (kn - ks) (n.g)^2/2 + 2 kb |v|^2 + 2 (kt - kb) (v.a_i)^2
+ *     g = u_j - u_i - (h/2)(d_i + d_j),   d = a - e
  * and force and torques are its exact gradient, hence objective, with linear and angular momentum
  * kept to rounding:
  *     f = ks g + f_e n,   f_e = (kn - ks) n.g + P
@@ -28,8 +28,8 @@
  * trigonometry, no root.
  *
  * Kelvin-Voigt damping (WITH_LINK_DAMPING), time eta [s], in addition:
- *     gd = v_j - v_i - (h/2)(w_i x a_i + w_j x a_j) - (w_i + w_j)/2 x g,   zero for rigid motion of
- *       a strained body
+ *     gd = v_j - v_i - (h/2)(w_i x a_i + w_j x a_j) - (w_i + w_j)/2 x g
+ *          (zero for rigid motion of a strained body)
  *     f_d = eta (ks gd + (kn - ks)(n.gd) n) at the middle of the gap, arms (h/2) a_i + g/2 and
  *       -(h/2) a_j - g/2
  *     mom_d = eta (kb wr + (kt - kb)(n.wr) n),   wr = w_j - w_i

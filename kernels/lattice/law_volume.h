@@ -4,8 +4,8 @@
  * Th is the sum over the six faces of eps/2, eps = normal gap/h. A face without link (free surface,
  * broken link, loaded face) has an eps that its outward normal traction t fixes, 2 G eps + lambda
  * Th = t [Pa]. Put in:
- *     Th = [sum over links of r g/(2 h) + sum over the others of t/(4 G)]/(1 + n_miss lambda/(4
- *       G)),   p = lambda Th
+ *     Th = [sum over links of r g/(2 h) + sum over the others of t/(4 G)]
+ *          /(1 + n_miss lambda/(4 G)),   p = lambda Th
  * which is the minimum of an energy: stiffness stays symmetric and positive for nu > -1, and a
  * broken link is n_miss + 1 on both sides. r is the share of the gap in the cell's own half
  * (law_link.h). The principle is that of movable cellular automata (Smolin et al. 2016, PSI 2,

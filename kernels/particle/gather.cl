@@ -7,7 +7,7 @@
  *
  * Two uses. Fused: second kick of this step, first kick and drift of the next, one pass over the
  * state. Observed: second kick only, force and torque kept; output then sees positions and
- * velocities of one time, and kick_drift.cl does the rest, with the same bits.
+ * velocities of one time, and the kernel kick_drift below does the rest, with the same bits.
  *
  * lint: WITH_PAIR_ROTATION requires WITH_SPIN
  * lint: WITH_WALL_ROTATION requires WITH_SPIN

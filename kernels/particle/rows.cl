@@ -4,8 +4,7 @@
  * Owned elements list owned and ghost neighbours, ghosts list owned ones alone (a pair of two
  * ghosts is somebody else's). Reach: radius plus the room to move until the next build plus half
  * the range of bonds, so two elements without a common row entry cannot interact before. Called
- * twice: count, then fill;
- * no row is ever too long.
+ * twice, to count and to fill, so no row is ever too long.
  *
  * The test uses differences and sums that are the same bits from either side, so b is in a's row if
  * and only if a is in b's. */

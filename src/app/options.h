@@ -31,7 +31,7 @@ struct options {
     char *precision; /* owned text of `set` */
 };
 
-/* Texts are borrowed from argv, but `set`, `error` and `precision`. Not collective: the same on
+/* Texts are borrowed from argv, except `set`, `error` and `precision`. Not collective: the same on
  * every rank. */
 struct options options_parse(int argc, char **argv);
 void options_free(struct options *options);

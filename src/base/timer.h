@@ -1,5 +1,5 @@
-/* Wall clocks by name: where a run's time goes on this rank. A begin and end cost one read of the
- * clock each. */
+/* Wall clocks by name: how much time of a run goes into what, on this rank. A begin and an end cost
+ * one reading of the clock each. */
 #ifndef DEMOCLES_TIMER_H
 #define DEMOCLES_TIMER_H
 

@@ -1,4 +1,4 @@
-/* For a thread that waits while others compute on its core. */
+/* Quick wake-up of a thread that waits while others compute on its core. */
 #ifndef DEMOCLES_WAKE_H
 #define DEMOCLES_WAKE_H
 

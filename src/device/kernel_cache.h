@@ -4,8 +4,7 @@
  * same kernel together (pocl #430, #1480), and it compiles both in clBuildProgram and at the first
  * launch. A lock file per user in the temporary folder, in which each program has a byte of its
  * own, covers all ranks and all jobs of the node; processes that compile different programs do not
- * wait for each other.
- * Other drivers: nothing happens. */
+ * wait for each other. With any other driver these functions do nothing. */
 #ifndef DEMOCLES_KERNEL_CACHE_H
 #define DEMOCLES_KERNEL_CACHE_H
 

@@ -1,4 +1,4 @@
-/* What the device's memory is used for, by the names of the arrays (buffer.h keeps the account). */
+/* How much device memory each array takes, by name; buffer.h keeps the account. */
 #ifndef DEMOCLES_MEMORY_TABLE_H
 #define DEMOCLES_MEMORY_TABLE_H
 

@@ -1,4 +1,4 @@
-/* Between trace.c, which records, and trace_write.c, which writes. */
+/* What trace.c, which records a timeline, hands to trace_write.c, which writes it. */
 #ifndef DEMOCLES_TRACE_PARTS_H
 #define DEMOCLES_TRACE_PARTS_H
 

@@ -1,9 +1,10 @@
-/* What the device and the users have to say between steps: lists used up, elements lost, a request
- * to stop; agreed by all ranks without stopping the pipeline.
+/* Votes between steps: lists that are used up, elements that are lost, a request to stop. All ranks
+ * agree on them without stopping the pipeline.
  *
  * The flags of the drift that led to step n, a multiple of WATCH_EVERY, are read back and voted on
- * beside the forces of step n, and known before those of step n + 1. Lists are therefore declared
- * stale before they are (margin of integrate.h), at the same step on any number of ranks. */
+ * while the forces of step n are computed, and the result is known before those of step n + 1.
+ * Lists are therefore declared stale before they are (margin of integrate.h), at the same step on
+ * any number of ranks. */
 #ifndef DEMOCLES_WATCH_H
 #define DEMOCLES_WATCH_H
 

@@ -1,4 +1,4 @@
-/* Numbers and launches of the lattice, as its other files want them. */
+/* Widths of numbers and launches of kernels, shared by the files of the lattice. */
 #include "lattice.h"
 
 #include <stdlib.h>

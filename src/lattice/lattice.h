@@ -51,7 +51,7 @@ struct lattice {
     struct timers unread, *timers; /* of exchanges; the run puts its own in place of `unread` */
 };
 
-/* `cells` and what `options` points to are borrowed during the call only, but for `material`,
+/* `cells` and what `options` points to are borrowed during the call only, except `material`,
  * `alpha` and `context`. Collective. */
 struct lattice *lattice_create(struct device *dev, const struct comm *comm,
     const struct lattice_cells *cells, const struct lattice_options *options);

@@ -1,4 +1,4 @@
-/* Cracks that a body has from the start. */
+/* Initial cracks: links of a body that are missing from the start. */
 #include <stdlib.h>
 
 #include "comm/fail.h"

@@ -1,4 +1,5 @@
-/* Set-up of the lattice: who owns what, what lies where, tables, kernels. */
+/* Creates the lattice on the device: owners of the cells, their layout in memory, tables and
+ * kernels. */
 #include "lattice.h"
 
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* One body into cells, and bodies onto grids. */
+/* Cuts a body into cells, and finds bodies whose grids agree. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
-/* What a lattice needs of the kernels, and the tables of constants that they read. Knows no
- * device. */
+/* The features that a lattice needs of its kernels, and the tables of constants that these read.
+ * Knows no device. */
 #ifndef DEMOCLES_LATTICE_FEATURES_H
 #define DEMOCLES_LATTICE_FEATURES_H
 

@@ -1,4 +1,4 @@
-/* w_max of the cells of a scene, and the time step that follows from it. */
+/* The highest natural frequency w_max of the cells of a scene, and the critical time step. */
 #ifndef DEMOCLES_LATTICE_FREQUENCY_H
 #define DEMOCLES_LATTICE_FREQUENCY_H
 

@@ -1,4 +1,4 @@
-/* From a scene and its cells to what the lattice wants to know. Knows no device. */
+/* Turns a scene and its cells into the options of lattice_create. Knows no device. */
 #ifndef DEMOCLES_LATTICE_INPUT_H
 #define DEMOCLES_LATTICE_INPUT_H
 

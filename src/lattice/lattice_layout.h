@@ -4,6 +4,7 @@
  * cell that it owns or needs as a ghost, sorted, so that the neighbour along the run is the next in
  * memory; one empty run in front and one behind, the first also in place of every neighbouring run
  * that is not there.
+ *
  * Index of a cell: run times length, plus lane. Host only; knows owners, no device and no MPI. */
 #ifndef DEMOCLES_LATTICE_LAYOUT_H
 #define DEMOCLES_LATTICE_LAYOUT_H

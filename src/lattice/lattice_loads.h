@@ -2,14 +2,14 @@
  * boundaries that occurs is a row (kernels/lattice/loads.h); cells name their row, and a row's
  * values at a time are the sum of its terms, each times the history of its boundary.
  *
- * force         equal shares on the free faces (without link) whose centres are in the region, as a
- * traction that keeps its direction: LOAD_FORCE,
- *               LOAD_LEVER, and its part along the normals at the start in LOAD_TRACTION; without
- *                 such a face, equal shares on the centres of cells
+ * force         equal parts on the free faces (without link) whose centres are in the region, as a
+ *               traction that keeps its direction: LOAD_FORCE, LOAD_LEVER, and its part along the
+ *               normals at the start in LOAD_TRACTION; without such a face, equal parts on the
+ *               centres of cells
  * pressure      -p h^2 n on these faces, turning with the cell: LOAD_BODY, LOAD_TRACTION
  * acceleration  of cells with their centre in the region
  * velocity      of these cells, where a component is not free; their CELL_FIX bit is set. fix is
- * the same with 0 and has no row. */
+ *               the same with 0 and has no row. */
 #ifndef DEMOCLES_LATTICE_LOADS_H
 #define DEMOCLES_LATTICE_LOADS_H
 

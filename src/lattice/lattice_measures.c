@@ -1,4 +1,4 @@
-/* What the lattice method measures. */
+/* The measures of the lattice method: probes, energy, momentum, largest stress, broken links. */
 #include "lattice_method.h"
 
 #include <math.h>

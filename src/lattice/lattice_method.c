@@ -1,4 +1,4 @@
-/* The lattice behind step.h: cells from the scene, their rank's part on the device, steps. */
+/* The lattice as a method of the main loop (step.h). */
 #include "lattice_method.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-/* What measures of a lattice need beside its own cells, at the time of the observed state: ghosts,
- * loads, pressures. */
+/* What the measures of a lattice need besides the rank's own cells, at the time of the observed
+ * state: ghosts, loads and pressures. */
 #ifndef DEMOCLES_LATTICE_OBSERVED_H
 #define DEMOCLES_LATTICE_OBSERVED_H
 

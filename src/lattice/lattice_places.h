@@ -1,5 +1,5 @@
-/* All cells of the body in runs along one of the axes, and who is whose neighbour. Host only; see
- * lattice_layout.h. */
+/* All cells of the bodies, in runs along one of the axes, and the neighbours of each run. Host
+ * only; see lattice_layout.h. */
 #ifndef DEMOCLES_LATTICE_PLACES_H
 #define DEMOCLES_LATTICE_PLACES_H
 

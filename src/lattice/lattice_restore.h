@@ -1,5 +1,5 @@
-/* The lattice's state into frames, besides what a picture has of it, and back: on any owners, cell
- * by cell. */
+/* The lattice's state in frames, beyond the fields that a user sees, and its restart from a frame:
+ * on any owners, cell by cell. */
 #ifndef DEMOCLES_LATTICE_RESTORE_H
 #define DEMOCLES_LATTICE_RESTORE_H
 

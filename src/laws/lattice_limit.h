@@ -3,8 +3,9 @@
  *
  * One material without wall links, any shape (free surfaces, holes, broken links and fixed DOF only
  * lower w_max):
- *     w_max^2 = 28 G/(rho h^2) up to lambda/G = 4.4305 (nu 0.408), 3 (lambda + 2 G)^2/(lambda rho
- *       h^2) above; LINK_REFERENCE 72 E/(rho h^2)
+ *     w_max^2 = 28 G/(rho h^2)                            up to lambda/G = 4.4305 (nu 0.408)
+ *     w_max^2 = 3 (lambda + 2 G)^2/(lambda rho h^2)       above
+ *     w_max^2 = 72 E/(rho h^2)                            with LINK_REFERENCE
  * from a scan of the Brillouin zone. Several materials, or walls: the largest of these is not safe
  * (one soft cell among stiff ones has up to 1.4 times its own). There, for any positive vector z,
  *     w_max^2 <= max over the DOF k of (B z)_k/z_k,  B = M^-1 |K|

@@ -4,8 +4,8 @@
  *     VEFRL  the same with K and D exchanged
  * RK4 is the classical scheme, RKN4 Nystrom's of fourth order with three stages for accelerations
  * without velocities:
- *     k1 = f(x), k2 = f(x + dt v/2 + dt^2 k1/8), k3 = f(x + dt v + dt^2 k2/2);  x += dt v + dt^2
- *       (k1 + 2 k2)/6,  v += dt (k1 + 4 k2 + k3)/6
+ *     k1 = f(x), k2 = f(x + dt v/2 + dt^2 k1/8), k3 = f(x + dt v + dt^2 k2/2)
+ *     x += dt v + dt^2 (k1 + 2 k2)/6,  v += dt (k1 + 4 k2 + k3)/6
  * whose dt v is added in three parts, so that a prescribed velocity is integrated by Simpson's
  * rule. */
 #include "lattice_schemes.h"

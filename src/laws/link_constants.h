@@ -10,8 +10,8 @@
  *
  * Different materials: the face between them is the interface, so a link is two halves in series.
  * With M = lambda + 2 G
- *     r_i = 2 M_j/(M_i + M_j), r_j = 2 M_i/(M_i + M_j),  kn = h (G_i r_i^2 + G_j r_j^2),  the
- *       others harmonic means
+ *     r_i = 2 M_j/(M_i + M_j), r_j = 2 M_i/(M_i + M_j),  kn = h (G_i r_i^2 + G_j r_j^2)
+ * and the others harmonic means,
  * which makes uniaxial strain through layers exact. A rigid wall is the limit of an infinitely
  * stiff j. */
 #ifndef DEMOCLES_LINK_CONSTANTS_H

@@ -1,5 +1,5 @@
-/* Cells: elements sorted into grids of several levels, so that neighbours are found, whatever mix
- * of sizes. See kernels/particle/grid.h and cells.cl. */
+/* Cell lists: elements sorted into grids of several levels, so that the neighbours of an element
+ * are found whatever the mix of sizes. kernels/particle/grid.h and cells.cl describe the grids. */
 #ifndef DEMOCLES_CELLS_H
 #define DEMOCLES_CELLS_H
 
@@ -20,8 +20,12 @@ struct cells {
     double period[3]; /* [m], 0 where not periodic */
     double domain[6]; /* low, high [m]: periodic grids span it */
     int n_level;
-    int64_t n_cell;
-    struct buffer grid_real, grid_int, key, begin, cursor, member, partial;
+    int64_t n_cell;                    /* of all levels */
+    struct buffer grid_real, grid_int; /* [n_level][GRID_REALS], [GRID_INTS], see grid.h */
+    struct buffer key;                 /* int [n] cell of each element */
+    struct buffer begin, cursor;       /* int [n_cell + 1] first member of each cell; work space */
+    struct buffer member;              /* int [n] elements, cell by cell */
+    struct buffer partial;             /* preal: bounds of each group of elements */
     struct launch *bounds, *count, *fill, *order, *copy;
 };
 

@@ -9,11 +9,15 @@
 #include "particle.h"
 #include "scene/measure_columns.h"
 
-/* Totals of this rank. The elastic energy's entry of `taken` stays zero. */
+/* What has left and entered the energy of this rank's elements since the run began [J], as exact
+ * sums of integers (kernels/common/sums.h). */
 struct totals {
+    /* taken by contacts, one sum per entry of a ledger (ledger.h); that of the elastic energy stays
+     * zero, since it is a function of the state */
     struct sum taken[LEDGER_WIDTH];
-    struct sum removed;
-    /* potential that elements have won by jumps of a period, to be added to that of their places */
+    struct sum removed; /* energy that removed elements had when they left */
+    /* potential that elements have gained by jumps of a period; it is added to that of their
+     * positions */
     struct sum wrapped;
 };
 

@@ -1,4 +1,5 @@
-/* The order of work; the list of elements, filling, files and checks are in generate_*.c. */
+/* Generates the initial elements: the order of the work. The list of elements, filling, CSV files
+ * and the checks are in generate_*.c. */
 #include "generate.h"
 
 #include "comm/fail.h"

@@ -1,4 +1,4 @@
-/* What speaks against a time step besides stability. */
+/* Warnings that a stable time step may still be too large for accuracy. */
 #include <math.h>
 #include <stdlib.h>
 

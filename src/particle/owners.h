@@ -1,9 +1,9 @@
-/* Who owns what: elements that have crossed into another subdomain move there with all that their
- * contacts remember, those that have left the domain are taken out, and the rest are put into
- * storage order.
+/* Ownership and migration: an element that has crossed into another subdomain moves to its new rank
+ * with all that its contacts remember, an element that has left the domain is removed, and the
+ * others are put into storage order.
  *
- * The rare path, once per list build. Only what moves passes through the host; it goes straight to
- * its new owner. Knows no halo and no lists but the contacts' histories. */
+ * This is the rare path, once per list rebuild. Only what migrates passes through the host, and it
+ * goes straight to its new owner. Knows no halo, and of the lists only the contacts' histories. */
 #ifndef DEMOCLES_OWNERS_H
 #define DEMOCLES_OWNERS_H
 
@@ -21,11 +21,15 @@ struct owners_removed {
 struct owners {
     const struct comm *comm;
     const struct features *features;
-    struct buffer node, cut, domain; /* tree of cuts, for select.cl; domain box */
-    int n_node;
-    struct buffer owner, stay, leave, index; /* per element */
-    struct buffer old_index;                 /* [n_owned + n_ghost] for the carriers */
-    struct buffer picked;
+    struct buffer node, cut, domain; /* tree of cuts, for select.cl; domain box [6] [m] */
+    int n_node;                      /* inner nodes of the tree */
+    /* int per owned element: rank that owns it from now on (negative: outside the domain); whether
+     * it stays, whether it leaves, later prefix sums of these; its new number */
+    struct buffer owner, stay, leave, index;
+    /* int [n_owned + n_ghost] number that an element had before, for pairs_carry and
+     * wall_contacts_carry */
+    struct buffer old_index;
+    struct buffer picked; /* records of the elements that leave, packed for the host */
     struct launch *select, *compact, *number, *gather;
     struct owners_removed *removed; /* [n_removed] in the last owners_move, on this rank */
     int64_t n_removed;

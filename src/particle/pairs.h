@@ -1,27 +1,38 @@
-/* Pairs of elements that may touch, and what they remember: built on the device from cells, anew
- * whenever somebody has used up the room to move.
+/* Neighbour (Verlet) lists: pairs of elements that may touch, and the history of their contacts.
+ * The lists are built on the device from cells, and rebuilt as soon as some element has used up its
+ * room to move (the skin).
  *
- * Two generations: histories pass from the old lists to the new ones. Knows no law (but asks the
- * program how wide a history is), no messages. */
+ * There are two generations of lists, and histories pass from the old one to the new one. Knows no
+ * contact law (except how wide a history is) and no messages. */
 #ifndef DEMOCLES_PAIRS_H
 #define DEMOCLES_PAIRS_H
 
 #include "cells.h"
 #include "contact_store.h"
 
+/* Where the pairs of one list lie. Interior pairs have both elements on this rank; boundary pairs
+ * have a ghost, and begin at the next multiple of 64:
+ *
+ *   0            n_interior   first_boundary       + n_mine       + n_boundary     capacity
+ *   | interior pairs |  gap  | boundary, mine | boundary, theirs |      free      |
+ *
+ * "mine" are computed on this rank, "theirs" on the other one, which sends the results
+ * (assigned.h). Without assignment both ranks compute every boundary pair: n_mine = n_boundary. */
 struct pair_list {
-    int64_t n_owned, n_all;
-    int64_t n_row, n_interior, first_boundary, n_boundary, n_incidence;
-    /* boundary pairs that this rank computes, the first ones: all of them unless assigned.h says
-     * else */
-    int64_t n_mine;
-    /* of the pairs that it computes, those count here whose lower element's number is below */
+    int64_t n_owned, n_all;                                 /* elements: owned; with ghosts */
+    int64_t n_interior, first_boundary, n_mine, n_boundary; /* pairs, see above */
+    int64_t n_row;       /* entries of all rows: neighbours, each pair from both its ends */
+    int64_t n_incidence; /* entries of the gather's list, with its blanks */
+    /* A pair that both ranks compute is counted on one of them: there where the number of its lower
+     * element in memory is below n_lower (so that rank owns it; n_all where pairs are assigned). */
     int64_t n_lower;
-    /* pairs whose lower element this rank owns: every pair counts on one rank */
-    int64_t n_own;
-    int64_t capacity;                      /* pairs that the arrays hold */
-    struct buffer row_begin, row, row_gid; /* [n_all + 1], [n_row], [n_row] */
-    struct buffer split, up_begin;         /* [n_all] */
+    int64_t n_own;    /* pairs whose lower element this rank owns: its part of all interactions */
+    int64_t capacity; /* pairs that the arrays hold */
+    /* rows of neighbours in ascending id: first entry of each row [n_all + 1]; numbers and ids of
+     * the neighbours [n_row] */
+    struct buffer row_begin, row, row_gid;
+    /* [n_all] where in its row the ids above the element's own begin; first pair of its row */
+    struct buffer split, up_begin;
     /* [n_owned + 1], [n_incidence], see kernels/particle/incidence.h */
     struct buffer incidence_begin, incidence;
     /* [capacity], history [layout.history][capacity] */

@@ -18,8 +18,7 @@ struct particle_run {
     struct walls *walls;
     double domain[6], period[3]; /* box low, high [m]; 0 where not periodic */
     struct elements_host *first; /* as generated, all elements on every rank */
-    /* [n_measure] elements that left the run where a count holds, on this rank */
-    int64_t *left;
+    int64_t *left; /* [n_measure] removed elements that a count goes on counting, on this rank */
     struct program *program_lists, *program_pair, *program_wall, *program_body, *program_assign;
     struct particles *particles;
     struct cells *cells;
@@ -49,20 +48,21 @@ void particle_plan(struct sim *s);
 void particle_setup(struct sim *s);
 void particle_warn(struct sim *s);
 void particle_free(struct sim *s);
-/* New owners, ghosts and lists, histories carried over. Collective. */
+/* Migrates elements to their owners and rebuilds ghosts and lists; histories are carried over.
+ * Collective. */
 void particle_regroup(struct sim *s);
-/* A new tree of cuts by the scene's method; elements have not moved yet. Collective. */
+/* Makes a new tree of cuts by the scene's method; the elements migrate later. Collective. */
 void particle_cut(struct sim *s);
-/* Ghosts, lists and everything that depends on their sizes, for owned elements that are in place.
- * Collective. particle_lists: the same as of `step`, without setting their room to move, which is
- * there. */
+/* Builds ghosts, lists and everything that depends on their sizes, for owned elements that are in
+ * place, and sets the room that each may move. particle_lists does the same for `step`, with the
+ * room that is already set. Collective. */
 void particle_build(struct sim *s);
 void particle_lists(struct sim *s, int64_t step);
-/* In place of the start of a run: elements, lists and all that they remember from the frame
- * s->from. Collective. */
+/* Restarts from the frame s->from, in place of the start of a run: elements, lists and the memory
+ * of contacts. Collective. */
 void particle_resume(struct sim *s);
-/* Owners by cuts through the places x [n][3] of all ranks, by place alone: nothing is known yet of
- * interactions. Collective. */
+/* Makes the first tree of cuts, through the positions x [n][3] of all ranks: interactions are not
+ * known yet. Collective. */
 void particle_spread(struct sim *s, const double *x, int64_t n);
 /* Forces of pairs and walls at the present step, into the result records. */
 void particle_forces(struct sim *s);

@@ -1,4 +1,4 @@
-/* What contacts remember, into frames and back: pairs, and elements at walls. */
+/* The memory of contacts, of pairs and of elements at walls, to frames and back. */
 #include "particle_contacts.h"
 
 #include <stdlib.h>

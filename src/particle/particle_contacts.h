@@ -1,5 +1,5 @@
-/* What contacts remember, into frames and back: pairs, and elements at walls. By ids and primitives
- * alone, so that any rank can take them up. */
+/* The memory of contacts (histories and state bits), written to frames and read back. Contacts are
+ * named by element ids and wall primitives alone, so that any rank can take them over. */
 #ifndef DEMOCLES_PARTICLE_CONTACTS_H
 #define DEMOCLES_PARTICLE_CONTACTS_H
 

@@ -1,12 +1,12 @@
-/* Which rank shall have which elements: a tree of cuts by the scene's method, from positions and
- * listed interactions.
+/* Partition: which rank shall own which elements. A tree of cuts is made by the scene's method,
+ * from positions and listed interactions.
  *
  *   geometric     the longest side of all elements is cut again and again, elements weighted by
- *     their interactions
+ *                 their interactions
  *   interactions  the same with an element and each of its pairs a point of its own, pairs at their
- *     midpoints
- *   graph         a fine tree whose leaves METIS deals out, so that few pairs lead from rank to
- *     rank
+ *                 midpoints
+ *   graph         a fine tree whose leaves METIS distributes, so that few pairs lead from rank to
+ *                 rank
  *
  * Whatever the method, an element goes where its own position is in the tree: who owns what is a
  * function of position, until the next cut too. */

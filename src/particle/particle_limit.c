@@ -1,4 +1,4 @@
-/* The time step's limit, as the driver asks for it. */
+/* The critical time step of the contacts of now, as the main loop asks for it (step.h). */
 #include "particle.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* What the particle method measures. */
+/* The measures of the particle method: counts, energy, momentum, forces on walls, probes. */
 #include "particle.h"
 
 #include <math.h>

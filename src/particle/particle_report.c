@@ -1,4 +1,4 @@
-/* What the record of a run says of the particle method. */
+/* The part of run.json that belongs to the particle method. */
 #include "particle.h"
 
 #include <math.h>

@@ -2,10 +2,10 @@
  * messages while the device works, and in watch_vote, where it waits for a flag of the step before.
  *
  *   forces at t^n    interior pairs and walls beside the exchange, then pairs with ghosts; where
- *     those are assigned to one side (assigned.h) some
- *                    interior pairs are left for the time in which their results travel
+ *                    those are assigned to one side (assigned.h) some interior pairs are left for
+ *                    the time in which their results travel
  *   gather           sum in fixed order, kick; unless the step is observed also the next kick and
- *     drift, to t^{n+1} */
+ *                    drift, to t^{n+1} */
 #include "particle.h"
 
 #include "kernels/common/batch.h"

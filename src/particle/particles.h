@@ -1,8 +1,8 @@
-/* The elements of this rank on its device: owned first, ghosts after.
+/* The elements of this rank on its device: owned ones first, ghosts behind them.
  *
- * One table of fields (particles_field) says what an element carries with it when it is reordered,
- * migrates or is written; what is rebuilt with the lists (reference, reach) or holds for one step
- * (force, torque) is not in it. Knows no lists, no walls, no messages. */
+ * Each field (enum and table below) is a property that an element keeps when it is reordered,
+ * migrates or is written to a frame. What is computed anew at a list rebuild (reference, reach) or
+ * at each step (force, torque) is a buffer of its own. Knows no lists, no walls, no messages. */
 #ifndef DEMOCLES_PARTICLES_H
 #define DEMOCLES_PARTICLES_H
 

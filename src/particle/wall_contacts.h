@@ -12,8 +12,11 @@
 enum { WALL_BATCH = 1024 }; /* steps of poses computed and uploaded at once */
 
 struct wall_list {
-    int64_t n_owned, n, capacity;
-    struct buffer begin, candidate, element; /* [n_owned + 1], [capacity], [capacity] */
+    int64_t n_owned, n, capacity; /* elements; candidates; room for candidates */
+    /* int: first candidate of each element [n_owned + 1]; primitive and element of each candidate
+     * [capacity] */
+    struct buffer begin, candidate, element;
+    /* int [capacity]; real [layout.history][capacity], see kernels/contact/contact_memory.h */
     struct buffer state, history;
 };
 

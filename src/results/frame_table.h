@@ -1,5 +1,5 @@
-/* Tables of a frame on the ranks that need their rows: each rank reads a share, and rows go
- * straight to where they belong. No rank ever has all. */
+/* Reads a table of a frame in parallel: each rank reads a share of the rows and sends them straight
+ * to the ranks that need them. No rank ever holds the whole table. */
 #ifndef DEMOCLES_FRAME_TABLE_H
 #define DEMOCLES_FRAME_TABLE_H
 

@@ -1,9 +1,9 @@
 /* Parallel HDF5, the part that democles needs: one file, written once by all ranks together, every
  * dataset with name, unit, description, checksum.
  *
- * Every rank calls every function with equal arguments (but for its own rows); all are collective.
- * Errors do not come back: the unfinished file is removed, one message gives rank and HDF5's own
- * words, and all ranks stop with EXIT_IO. Knows nothing of frames. */
+ * Every rank calls every function with equal arguments (except for its own rows); all are
+ * collective. Errors do not come back: the unfinished file is removed, one message gives rank and
+ * HDF5's own words, and all ranks stop with EXIT_IO. Knows nothing of frames. */
 #ifndef DEMOCLES_H5_WRITE_H
 #define DEMOCLES_H5_WRITE_H
 

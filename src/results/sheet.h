@@ -1,4 +1,4 @@
-/* A table's columns under construction, and the memory that they own. */
+/* A table of columns while it is being put together, with the memory that its columns own. */
 #ifndef DEMOCLES_SHEET_H
 #define DEMOCLES_SHEET_H
 

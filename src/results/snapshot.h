@@ -2,14 +2,13 @@
  * run continues from any of them.
  *
  * frame_000123.hdf holds
- *   /VTKHDF        unstructured grid of one vertex, or hexahedron, per element: Points,
- *     PointData/NAME, CellData/NAME, FieldData/TimeValue; one part
- *                  per rank, rank after rank
- *   /democles      attributes format_version, step, time, index, n_element, n_dataset (in the whole
- *     file) and the caller's; dataset resolved (the
- *                  scene as YAML)
- *   /democles/TABLE/COLUMN   every table of the state, rank after rank;  /democles/rows/TABLE
- *     [n_rank] says how many rows each rank had
+ *   /VTKHDF         unstructured grid of one vertex, or hexahedron, per element: Points,
+ *                   PointData/NAME, CellData/NAME, FieldData/TimeValue; one part per rank, rank
+ *                   after rank
+ *   /democles       attributes format_version, step, time, index, n_element, n_dataset (in the
+ *                   whole file) and the caller's; dataset resolved (the scene as YAML)
+ *   /democles/TABLE/COLUMN        every table of the state, rank after rank
+ *   /democles/rows/TABLE          [n_rank] how many rows each rank had
  * Every dataset carries the attributes name, unit, description and checksum (see h5_check.h). A
  * column of the state that is a point or cell column too (same name, memory, type, width) is a hard
  * link to it, not a copy. A frame appears by rename, complete and on disk, or not at all. Knows no

@@ -1,5 +1,5 @@
-/* Measures: what the scene asks to be written as time series. One line per due step; sums over
- * ranks are sums of integers. */
+/* Measures: the time series that a scene asks for, one row of a CSV file per step that is due. Sums
+ * over ranks are sums of integers, so they do not depend on the number of ranks. */
 #ifndef DEMOCLES_MEASURES_H
 #define DEMOCLES_MEASURES_H
 

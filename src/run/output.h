@@ -1,5 +1,5 @@
-/* What a run gives out while it runs: measures, frames, the decision to stop. Collective unless
- * said otherwise. */
+/* What a run writes while it runs: measures and frames; and whether somebody has asked it to stop.
+ * All functions are collective unless they say otherwise. */
 #ifndef DEMOCLES_OUTPUT_H
 #define DEMOCLES_OUTPUT_H
 

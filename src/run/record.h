@@ -1,4 +1,5 @@
-/* run.json: what a run was, did and cost, at its end, also of a failed one. */
+/* run.json, the record of a run: what it was, did and cost. It is written at the end, also of a run
+ * that failed. */
 #ifndef DEMOCLES_RECORD_H
 #define DEMOCLES_RECORD_H
 

@@ -1,10 +1,10 @@
-/* Going on with a run: the newest whole frame of a folder of results, its scene, and what the run
- * as a whole counts.
+/* Restart of a run: finds the latest intact frame in a folder of results, and reads its scene and
+ * the counters of the run as a whole.
  *
- * A frame has all that the next step depends on, in the run's own bits, and nothing of ranks and
- * owners. The scene is the frame's own: its resolved text, whose paths are absolute; what may be
- * changed are keys that the state does not depend on. What the scene reads from files is read
- * again, and compared by a checksum. */
+ * A frame holds all that the next step depends on, in the run's own bits, and nothing of ranks and
+ * owners. The scene is that of the frame: its resolved text, whose paths are absolute. Only keys
+ * that the state does not depend on can be changed. Files that the scene names are read again and
+ * compared with the first reading by a checksum. */
 #ifndef DEMOCLES_RESUME_H
 #define DEMOCLES_RESUME_H
 

@@ -1,4 +1,4 @@
-/* What is wrong with a scene, told to the user once for all ranks. */
+/* Prints what is wrong with a scene, once for all ranks. */
 #ifndef DEMOCLES_SCENE_REPORT_H
 #define DEMOCLES_SCENE_REPORT_H
 
