@@ -186,7 +186,7 @@ class Lattice(parallel_runs.Case):
         run = self.run_scene(self.put(over), 1, "--steps", "2000")
         self.assertEqual(run.code, 5, run.err)
         self.assertIn("are not numbers", run.err)
-        self.assertIn("of its limit", run.err)
+        self.assertIn("of the critical one", run.err)
 
 
 if __name__ == "__main__":
