@@ -13,13 +13,14 @@ enum {
     HUGE_PAGE = 2 << 20 /* [byte] on x86-64 and with 4 KiB pages on arm64 */
 };
 
-void buffer_init(struct buffer *buffer, const char *name)
+void buffer_init(struct buffer *buffer, struct device *dev, const char *name)
 {
-    *buffer = (struct buffer){.name = name};
+    *buffer = (struct buffer){.dev = dev, .name = name};
 }
 
-static void fill(struct device *dev, struct buffer *buffer, cl_uint pattern)
+static void fill(struct buffer *buffer, cl_uint pattern)
 {
+    struct device *dev = buffer->dev;
     cl_event *event = trace_event(dev->trace, NULL);
     check_cl(clEnqueueFillBuffer(
         dev->compute, buffer->mem, &pattern, sizeof pattern, 0, buffer->capacity, 0, NULL, event));
@@ -27,9 +28,9 @@ static void fill(struct device *dev, struct buffer *buffer, cl_uint pattern)
     check_cl(clFinish(dev->compute)); /* the copy queue may use it next */
 }
 
-static _Noreturn void too_large(
-    const struct device *dev, const struct buffer *buffer, size_t bytes, const char *why)
+static _Noreturn void too_large(const struct buffer *buffer, size_t bytes, const char *why)
 {
+    const struct device *dev = buffer->dev;
     fail_stop(EXIT_DEVICE,
         "array `%s` of %.1f MiB does not fit on %s: %s (in use %.1f MiB, device %.1f MiB, largest "
         "array %.1f MiB). Use more devices, or "
@@ -63,17 +64,17 @@ static void CL_CALLBACK free_pages(cl_mem mem, void *pages)
 }
 
 /* New memory of at least `bytes`, not initialised. */
-static void allocate(struct device *dev, struct buffer *buffer, size_t bytes, cl_mem_flags flags)
+static void allocate(struct buffer *buffer, size_t bytes, cl_mem_flags flags)
 {
+    struct device *dev = buffer->dev;
     /* Room to grow only where growth has been seen. */
     size_t capacity = buffer->capacity > 0 ? bytes + bytes / 4 : bytes;
     if (capacity > dev->max_alloc) capacity = bytes;
     capacity = (capacity / GRAIN + (capacity % GRAIN > 0 || capacity == 0)) * GRAIN;
-    buffer_free(dev, buffer);
-    if (capacity > dev->max_alloc)
-        too_large(dev, buffer, capacity, "larger than its largest array");
+    buffer_free(buffer);
+    if (capacity > dev->max_alloc) too_large(buffer, capacity, "larger than its largest array");
     if (dev->counters.now_bytes + (int64_t)capacity > (int64_t)dev->global_mem)
-        too_large(dev, buffer, capacity, "its memory is used up");
+        too_large(buffer, capacity, "its memory is used up");
 
     cl_int code;
     void *pages = huge_pages(dev, flags, capacity);
@@ -81,7 +82,7 @@ static void allocate(struct device *dev, struct buffer *buffer, size_t bytes, cl
         dev->context, flags | (pages ? CL_MEM_USE_HOST_PTR : 0), capacity, pages, &code);
     if (code == CL_MEM_OBJECT_ALLOCATION_FAILURE || code == CL_OUT_OF_RESOURCES ||
         code == CL_OUT_OF_HOST_MEMORY || code == CL_INVALID_BUFFER_SIZE)
-        too_large(dev, buffer, capacity, device_error_name(code));
+        too_large(buffer, capacity, device_error_name(code));
     check_cl_as(code, "clCreateBuffer");
     /* commands may use it until then */
     if (pages) check_cl(clSetMemObjectDestructorCallback(buffer->mem, free_pages, pages));
@@ -101,34 +102,35 @@ static cl_uint initial_pattern(void)
     return poison && strcmp(poison, "1") == 0 ? 0xffffffffu : 0;
 }
 
-bool buffer_reserve(struct device *dev, struct buffer *buffer, size_t bytes)
+bool buffer_reserve(struct buffer *buffer, size_t bytes)
 {
     if (buffer->mem && bytes <= buffer->capacity) {
         buffer->bytes = bytes;
         return false;
     }
-    allocate(dev, buffer, bytes, CL_MEM_READ_WRITE);
-    fill(dev, buffer, initial_pattern());
+    allocate(buffer, bytes, CL_MEM_READ_WRITE);
+    fill(buffer, initial_pattern());
     return true;
 }
 
-bool buffer_reserve_staging(struct device *dev, struct buffer *buffer, size_t bytes)
+bool buffer_reserve_staging(struct buffer *buffer, size_t bytes)
 {
     if (buffer->mem && bytes <= buffer->capacity) {
         buffer->bytes = bytes;
         return false;
     }
     cl_int code;
-    allocate(dev, buffer, bytes, CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR);
-    buffer->host = clEnqueueMapBuffer(dev->compute, buffer->mem, CL_TRUE,
+    allocate(buffer, bytes, CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR);
+    buffer->host = clEnqueueMapBuffer(buffer->dev->compute, buffer->mem, CL_TRUE,
         CL_MAP_READ | CL_MAP_WRITE, 0, buffer->capacity, 0, NULL, NULL, &code);
     check_cl_as(code, "clEnqueueMapBuffer");
     memset(buffer->host, (int)(initial_pattern() & 0xff), buffer->capacity);
     return true;
 }
 
-void buffer_free(struct device *dev, struct buffer *buffer)
+void buffer_free(struct buffer *buffer)
 {
+    struct device *dev = buffer->dev;
     if (buffer->mem) {
         if (buffer->host) {
             check_cl(
@@ -139,59 +141,59 @@ void buffer_free(struct device *dev, struct buffer *buffer)
         dev->counters.now_bytes -= (int64_t)buffer->capacity;
         memory_table_add(&dev->memory, buffer->name, -(int64_t)buffer->capacity);
     }
-    buffer_init(buffer, buffer->name);
+    buffer_init(buffer, dev, buffer->name);
 }
 
-void buffer_write(
-    struct device *dev, struct buffer *buffer, size_t offset, size_t bytes, const void *data)
+void buffer_zero(struct buffer *buffer)
 {
-    if (bytes == 0) return;
-    buffer_write_begin(dev, dev->compute, buffer, offset, bytes, data, 0, NULL, NULL);
-    check_cl(clFinish(dev->compute));
+    if (buffer->mem) fill(buffer, 0);
 }
 
-void buffer_read(
-    struct device *dev, const struct buffer *buffer, size_t offset, size_t bytes, void *data)
+/* Either way: `to` is host memory to write into, else `from` what to read there. */
+static void copy(const struct buffer *buffer, cl_command_queue queue, size_t offset, size_t bytes,
+    void *to, const void *from, const cl_event *after, cl_event *event)
 {
-    if (bytes == 0) return;
-    buffer_read_begin(dev, dev->compute, buffer, offset, bytes, data, 0, NULL, NULL);
-    check_cl(clFinish(dev->compute));
-}
-
-void buffer_zero(struct device *dev, struct buffer *buffer)
-{
-    if (buffer->mem) fill(dev, buffer, 0);
-}
-
-void buffer_write_begin(struct device *dev, cl_command_queue queue, struct buffer *buffer,
-    size_t offset, size_t bytes, const void *data, cl_uint n_wait, const cl_event *wait,
-    cl_event *event)
-{
+    struct device *dev = buffer->dev;
+    cl_uint n_after = after ? 1 : 0;
     assert(offset + bytes <= buffer->bytes);
     if (bytes == 0) {
-        if (n_wait > 0 || event) check_cl(clEnqueueMarkerWithWaitList(queue, n_wait, wait, event));
+        if (after || event) check_cl(clEnqueueMarkerWithWaitList(queue, n_after, after, event));
         return;
     }
     event = trace_event(dev->trace, event);
-    check_cl(clEnqueueWriteBuffer(
-        queue, buffer->mem, CL_FALSE, offset, bytes, data, n_wait, wait, event));
+    if (to)
+        check_cl(clEnqueueReadBuffer(
+            queue, buffer->mem, CL_FALSE, offset, bytes, to, n_after, after, event));
+    else
+        check_cl(clEnqueueWriteBuffer(
+            queue, buffer->mem, CL_FALSE, offset, bytes, from, n_after, after, event));
     trace_command(dev->trace, queue, buffer->name, bytes, event);
-    dev->counters.n_h2d++;
-    dev->counters.h2d_bytes += (int64_t)bytes;
+    *(to ? &dev->counters.n_d2h : &dev->counters.n_h2d) += 1;
+    *(to ? &dev->counters.d2h_bytes : &dev->counters.h2d_bytes) += (int64_t)bytes;
 }
 
-void buffer_read_begin(struct device *dev, cl_command_queue queue, const struct buffer *buffer,
-    size_t offset, size_t bytes, void *data, cl_uint n_wait, const cl_event *wait, cl_event *event)
+void buffer_write_begin(struct buffer *buffer, cl_command_queue queue, size_t offset, size_t bytes,
+    const void *data, const cl_event *after, cl_event *event)
 {
-    assert(offset + bytes <= buffer->bytes);
-    if (bytes == 0) {
-        if (n_wait > 0 || event) check_cl(clEnqueueMarkerWithWaitList(queue, n_wait, wait, event));
-        return;
-    }
-    event = trace_event(dev->trace, event);
-    check_cl(clEnqueueReadBuffer(
-        queue, buffer->mem, CL_FALSE, offset, bytes, data, n_wait, wait, event));
-    trace_command(dev->trace, queue, buffer->name, bytes, event);
-    dev->counters.n_d2h++;
-    dev->counters.d2h_bytes += (int64_t)bytes;
+    copy(buffer, queue, offset, bytes, NULL, data, after, event);
+}
+
+void buffer_read_begin(const struct buffer *buffer, cl_command_queue queue, size_t offset,
+    size_t bytes, void *data, const cl_event *after, cl_event *event)
+{
+    copy(buffer, queue, offset, bytes, data, NULL, after, event);
+}
+
+void buffer_write(struct buffer *buffer, size_t offset, size_t bytes, const void *data)
+{
+    if (bytes == 0) return;
+    buffer_write_begin(buffer, buffer->dev->compute, offset, bytes, data, NULL, NULL);
+    check_cl(clFinish(buffer->dev->compute));
+}
+
+void buffer_read(const struct buffer *buffer, size_t offset, size_t bytes, void *data)
+{
+    if (bytes == 0) return;
+    buffer_read_begin(buffer, buffer->dev->compute, offset, bytes, data, NULL, NULL);
+    check_cl(clFinish(buffer->dev->compute));
 }

@@ -2,19 +2,19 @@
 
 #include "trace.h"
 
-void exchange_init(struct exchange *x, const char *const name[4])
+void exchange_init(struct exchange *x, struct device *dev, const char *const name[4])
 {
     struct buffer *all[] = {&x->packed, &x->arrived, &x->send_staging, &x->recv_staging};
-    *x = (struct exchange){0};
-    for (int i = 0; i < 4; i++) buffer_init(all[i], name[i]);
+    *x = (struct exchange){.dev = dev};
+    for (int i = 0; i < 4; i++) buffer_init(all[i], dev, name[i]);
 }
 
-void exchange_free(struct device *dev, struct exchange *x)
+void exchange_free(struct exchange *x)
 {
     struct buffer *all[] = {&x->packed, &x->arrived, &x->send_staging, &x->recv_staging};
-    exchange_settle(dev, x);
+    exchange_settle(x);
     halo_free(x->halo);
-    for (int i = 0; i < 4; i++) buffer_free(dev, all[i]);
+    for (int i = 0; i < 4; i++) buffer_free(all[i]);
 }
 
 void exchange_plan(struct exchange *x, const struct comm *comm, const int64_t *count_to)
@@ -26,13 +26,13 @@ void exchange_plan(struct exchange *x, const struct comm *comm, const int64_t *c
     x->n_recv = x->halo->recv_begin[x->halo->n_recv];
 }
 
-void exchange_bind(struct device *dev, struct exchange *x, size_t record, bool has_arrived)
+void exchange_bind(struct exchange *x, size_t record, bool has_arrived)
 {
     x->record = record;
-    buffer_reserve(dev, &x->packed, (size_t)x->n_send * record);
-    if (has_arrived) buffer_reserve(dev, &x->arrived, (size_t)x->n_recv * record);
-    buffer_reserve_staging(dev, &x->send_staging, (size_t)x->n_send * record);
-    buffer_reserve_staging(dev, &x->recv_staging, (size_t)x->n_recv * record);
+    buffer_reserve(&x->packed, (size_t)x->n_send * record);
+    if (has_arrived) buffer_reserve(&x->arrived, (size_t)x->n_recv * record);
+    buffer_reserve_staging(&x->send_staging, (size_t)x->n_send * record);
+    buffer_reserve_staging(&x->recv_staging, (size_t)x->n_recv * record);
     halo_bind(x->halo, x->send_staging.host, x->recv_staging.host, record);
 }
 
@@ -64,27 +64,27 @@ static void complete_sends(struct device *dev, struct halo *halo, struct timers 
     timer_end(timers, TIMER_EXCHANGE);
 }
 
-void exchange_begin(
-    struct device *dev, struct exchange *x, struct launch *pack, struct timers *timers)
+void exchange_begin(struct exchange *x, struct launch *pack, struct timers *timers)
 {
-    complete_sends(dev, x->halo, timers);
-    launch_run(pack, dev->compute, x->n_send, 0, NULL, &x->packed_event);
-    check_cl(clFlush(dev->compute));
-    buffer_read_begin(dev, read_queue(dev), &x->packed, 0, (size_t)x->n_send * x->record,
-        x->send_staging.host, 1, &x->packed_event, &x->read_event);
-    check_cl(clFlush(read_queue(dev)));
+    complete_sends(x->dev, x->halo, timers);
+    launch_run_on(pack, x->dev->compute, x->n_send, NULL, &x->packed_event);
+    check_cl(clFlush(x->dev->compute));
+    buffer_read_begin(&x->packed, read_queue(x->dev), 0, (size_t)x->n_send * x->record,
+        x->send_staging.host, &x->packed_event, &x->read_event);
+    check_cl(clFlush(read_queue(x->dev)));
     release(&x->written_event); /* long done: the receive staging is free */
     timer_begin(timers, TIMER_EXCHANGE);
     halo_begin_recv(x->halo);
     timer_end(timers, TIMER_EXCHANGE);
-    trace_lap(dev->trace, "pack");
+    trace_lap(x->dev->trace, "pack");
 }
 
 /* Waits until the send buffer is full, and sends. A host that shares cores with the device sleeps
  * meanwhile; elsewhere it drives MPI, and does not trust the driver's wait, which may be a spin
  * without progress. */
-static void send(struct device *dev, struct exchange *x, struct timers *timers)
+static void send(struct exchange *x, struct timers *timers)
 {
+    struct device *dev = x->dev;
     trace_lap(dev->trace, "enqueue");
     if (device_shares_cores(dev)) check_cl(clWaitForEvents(1, &x->read_event));
     while (!device_event_done(x->read_event)) {
@@ -113,26 +113,26 @@ static void receive(struct device *dev, struct halo *halo, cl_event *most, struc
     trace_messages(dev->trace, halo->n_recv, halo->recv_rank, false);
 }
 
-const cl_event *exchange_swap(struct device *dev, struct exchange *x, struct buffer *to,
-    size_t offset, cl_event *most, struct timers *timers)
+const cl_event *exchange_swap(
+    struct exchange *x, struct buffer *to, size_t offset, cl_event *most, struct timers *timers)
 {
-    send(dev, x, timers);
-    receive(dev, x->halo, most, timers);
-    buffer_write_begin(dev, dev->copy, to, offset, (size_t)x->n_recv * x->record,
-        x->recv_staging.host, 0, NULL, &x->written_event);
-    check_cl(clFlush(dev->copy));
+    send(x, timers);
+    receive(x->dev, x->halo, most, timers);
+    buffer_write_begin(to, x->dev->copy, offset, (size_t)x->n_recv * x->record,
+        x->recv_staging.host, NULL, &x->written_event);
+    check_cl(clFlush(x->dev->copy));
     release(&x->read_event);
     release(&x->packed_event);
     return &x->written_event;
 }
 
-void exchange_settle(struct device *dev, struct exchange *x)
+void exchange_settle(struct exchange *x)
 {
     if (x->halo) halo_end(x->halo);
     release(&x->written_event);
     release(&x->read_event);
     release(&x->packed_event);
-    device_finish(dev);
+    device_finish(x->dev);
 }
 
 struct halo_traffic exchange_sent(const struct exchange *x)

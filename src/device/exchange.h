@@ -13,7 +13,8 @@
 #include "base/timer.h"
 
 struct exchange {
-    struct halo *halo; /* of the present plan; NULL before the first */
+    struct device *dev; /* borrowed */
+    struct halo *halo;  /* of the present plan; NULL before the first */
     int64_t n_send, n_recv;
     size_t record; /* [byte] */
     /* [n_send], [n_recv] records; arrived: only where exchange_bind was asked for it */
@@ -24,30 +25,29 @@ struct exchange {
 };
 
 /* name: of packed, arrived, and the staging buffers. */
-void exchange_init(struct exchange *x, const char *const name[4]);
-void exchange_free(struct device *dev, struct exchange *x);
+void exchange_init(struct exchange *x, struct device *dev, const char *const name[4]);
+void exchange_free(struct exchange *x);
 
 /* A new plan: count_to [n_rank] records to each rank. Nothing may be under way. Collective. */
 void exchange_plan(struct exchange *x, const struct comm *comm, const int64_t *count_to);
 /* Records of so many bytes from now on, and room for them. has_arrived: also on the device, else
  * arrivals go to where exchange_swap is told. */
-void exchange_bind(struct device *dev, struct exchange *x, size_t record, bool has_arrived);
+void exchange_bind(struct exchange *x, size_t record, bool has_arrived);
 
 /* Completes the sends of the exchange before, enqueues `pack`, which fills x->packed with n_send
  * records, and its read-back, and posts receives. */
-void exchange_begin(
-    struct device *dev, struct exchange *x, struct launch *pack, struct timers *timers);
+void exchange_begin(struct exchange *x, struct launch *pack, struct timers *timers);
 /* Sends, waits for arrivals, enqueues their copy to `to` at `offset` bytes. Returns the event that
  * kernels on arrivals have to wait for (borrowed). `most`: of the kernels that run meanwhile, an
  * event shortly before their end, released here: a host that shares cores with the device sleeps
  * until then, instead of taking time from it by looking. Pack kernel and all before it are done
  * when this returns: what is enqueued then, on whichever queue, cannot overtake kernels that read
  * the arrivals before. */
-const cl_event *exchange_swap(struct device *dev, struct exchange *x, struct buffer *to,
-    size_t offset, cl_event *most, struct timers *timers);
+const cl_event *exchange_swap(
+    struct exchange *x, struct buffer *to, size_t offset, cl_event *most, struct timers *timers);
 
 /* Before the plan or the staging buffers change: nothing is under way afterwards. */
-void exchange_settle(struct device *dev, struct exchange *x);
+void exchange_settle(struct exchange *x);
 /* By this rank within steps since the start. */
 struct halo_traffic exchange_sent(const struct exchange *x);
 

@@ -38,13 +38,13 @@ static double value_of(struct sum s)
     return s.bad ? (double)NAN : sign * (ldexp((double)s.hi, -20) + rest);
 }
 
-void integer_sums_run(struct device *dev, struct launch *launch, const struct buffer *partial,
-    int n_sum, struct sum *sum)
+void integer_sums_run(
+    struct launch *launch, const struct buffer *partial, int n_sum, struct sum *sum)
 {
     size_t bytes = (size_t)(SUMS_GROUPS * n_sum * SUMS_WIDTH) * sizeof(int64_t);
     int64_t *part = fail_alloc(bytes);
-    launch_run(launch, dev->compute, SUMS_GROUPS * SUMS_GROUP, 0, NULL, NULL);
-    buffer_read(dev, partial, 0, bytes, part);
+    launch_run(launch, SUMS_GROUPS * SUMS_GROUP);
+    buffer_read(partial, 0, bytes, part);
     for (int k = 0; k < n_sum; k++) {
         for (int g = 0; g < SUMS_GROUPS; g++) {
             const int64_t *p = part + (g * n_sum + k) * SUMS_WIDTH;

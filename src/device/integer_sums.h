@@ -13,8 +13,8 @@ void integer_sums_add(struct sum *a, struct sum b, int sign);
 void integer_sums_carry(struct sum *s);
 /* Runs a kernel that leaves partial [SUMS_GROUPS][n_sum][SUMS_WIDTH] and adds its sums to `sum`
  * [n_sum]. */
-void integer_sums_run(struct device *dev, struct launch *launch, const struct buffer *partial,
-    int n_sum, struct sum *sum);
+void integer_sums_run(
+    struct launch *launch, const struct buffer *partial, int n_sum, struct sum *sum);
 /* The sums of all ranks as doubles [n], NaN if some term could not be added. Collective. */
 void integer_sums_all(const struct comm *comm, const struct sum *sum, int n, double *value);
 

@@ -279,11 +279,12 @@ double launch_seconds(struct launch *launch)
     return launch->seconds;
 }
 
-void launch_run(struct launch *launch, cl_command_queue queue, int64_t n_item, cl_uint n_wait,
-    const cl_event *wait, cl_event *event)
+void launch_run_on(struct launch *launch, cl_command_queue queue, int64_t n_item,
+    const cl_event *after, cl_event *event)
 {
+    cl_uint n_after = after ? 1 : 0;
     if (n_item <= 0) {
-        if (n_wait > 0 || event) check_cl(clEnqueueMarkerWithWaitList(queue, n_wait, wait, event));
+        if (after || event) check_cl(clEnqueueMarkerWithWaitList(queue, n_after, after, event));
         return;
     }
     struct device *dev = launch->program->dev;
@@ -296,7 +297,7 @@ void launch_run(struct launch *launch, cl_command_queue queue, int64_t n_item, c
     bool compiles = dev->is_pocl && global > launch->largest;
     int lock = compiles ? kernel_cache_lock(dev, launch->program->cache_key) : -1;
     cl_int code = clEnqueueNDRangeKernel(
-        queue, launch->kernel, 1, NULL, &global, &launch->local, n_wait, wait, done);
+        queue, launch->kernel, 1, NULL, &global, &launch->local, n_after, after, done);
     if (code != CL_SUCCESS)
         fail_stop(EXIT_DEVICE, "kernel %s: clEnqueueNDRangeKernel: %s (%d)", launch->name,
             device_error_name(code), (int)code);
@@ -313,4 +314,9 @@ void launch_run(struct launch *launch, cl_command_queue queue, int64_t n_item, c
         if (event) check_cl(clRetainEvent(*done));
         p->event[p->n++] = *done;
     }
+}
+
+void launch_run(struct launch *launch, int64_t n_item)
+{
+    launch_run_on(launch, launch->program->dev->compute, n_item, NULL, NULL);
 }

@@ -68,12 +68,14 @@ bool launch_set_real_if(struct launch *launch, const char *arg, double value);
  * the same. */
 void launch_check(const struct launch *launch);
 
-/* Enqueues n_item work-items, padded. n_item <= 0 enqueues no kernel, but still waits for `wait` in
- * the queue and still gives an event. `event` may be NULL; else the caller releases it. Allocates
+/* Enqueues n_item work-items, padded, on the compute queue; none for n_item <= 0. Allocates
  * nothing. On pocl the first run, and one larger than all before, waits until it is done, because
  * pocl compiles then (kernel_cache.h). */
-void launch_run(struct launch *launch, cl_command_queue queue, int64_t n_item, cl_uint n_wait,
-    const cl_event *wait, cl_event *event);
+void launch_run(struct launch *launch, int64_t n_item);
+/* The same on any queue, behind `after`, with an event that the caller releases; either may be
+ * NULL. n_item <= 0 enqueues no kernel, but the queue still waits and the event is still given. */
+void launch_run_on(struct launch *launch, cl_command_queue queue, int64_t n_item,
+    const cl_event *after, cl_event *event);
 
 /* Global size for n_item > 0: whole groups, above 64 groups rounded up to 64 steps per power of two
  * (at most 1.6 % of empty items), because pocl keeps a list of the sizes it has seen, and list

@@ -11,11 +11,11 @@ struct scan {
 };
 
 struct scan *scan_create(struct device *dev, const struct program *lists);
-void scan_free(struct device *dev, struct scan *scan);
+void scan_free(struct scan *scan);
 
 /* data [n + 1] int: exclusive prefix sums in place, the total in data[n]. */
-void scan_run(struct device *dev, struct scan *scan, struct buffer *data, int64_t n);
+void scan_run(struct scan *scan, struct buffer *data, int64_t n);
 /* The same, and the total to the host: blocking. */
-int64_t scan_total(struct device *dev, struct scan *scan, struct buffer *data, int64_t n);
+int64_t scan_total(struct scan *scan, struct buffer *data, int64_t n);
 
 #endif

@@ -8,11 +8,11 @@ static void wait_read(struct watch *w)
     w->read = NULL;
 }
 
-void watch_read(struct device *dev, struct watch *w, const struct buffer *flags)
+void watch_read(struct watch *w, const struct buffer *flags)
 {
     wait_read(w);
-    buffer_read_begin(dev, dev->compute, flags, 0, sizeof w->flag, w->flag, 0, NULL, &w->read);
-    check_cl(clFlush(dev->compute));
+    buffer_read_begin(flags, flags->dev->compute, 0, sizeof w->flag, w->flag, NULL, &w->read);
+    check_cl(clFlush(flags->dev->compute));
 }
 
 void watch_vote(struct watch *w, const struct comm *comm, int32_t own)
@@ -29,9 +29,9 @@ int32_t watch_agreed(struct watch *w, const struct comm *comm)
     return comm_vote_end(comm, &w->vote);
 }
 
-void watch_reset(struct device *dev, struct watch *w, const struct comm *comm, struct buffer *flags)
+void watch_reset(struct watch *w, const struct comm *comm, struct buffer *flags)
 {
     wait_read(w);
     comm_vote_end(comm, &w->vote);
-    buffer_zero(dev, flags);
+    buffer_zero(flags);
 }

@@ -28,14 +28,13 @@ struct watch {
 };
 
 /* After a drift: begins to read the flags. */
-void watch_read(struct device *dev, struct watch *w, const struct buffer *flags);
+void watch_read(struct watch *w, const struct buffer *flags);
 /* Beside the next step: joins what was read with `own` (WATCH_STOP) and begins the vote.
  * Collective. */
 void watch_vote(struct watch *w, const struct comm *comm, int32_t own);
 /* What was agreed, WATCH_ bits; 0 if no vote is open. */
 int32_t watch_agreed(struct watch *w, const struct comm *comm);
 /* Forgets flags and votes under way; all ranks at the same step. */
-void watch_reset(
-    struct device *dev, struct watch *w, const struct comm *comm, struct buffer *flags);
+void watch_reset(struct watch *w, const struct comm *comm, struct buffer *flags);
 
 #endif

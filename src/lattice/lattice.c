@@ -7,25 +7,12 @@
 
 size_t lattice_x_bytes(const struct lattice *l)
 {
-    return l->features.position_is_float ? sizeof(float) : sizeof(double);
+    return reals_size(l->features.position_is_float);
 }
 
 size_t lattice_v_bytes(const struct lattice *l)
 {
-    return l->features.real_is_float ? sizeof(float) : sizeof(double);
-}
-
-void lattice_put(
-    struct lattice *l, struct buffer *buffer, bool is_float, const double *value, int64_t n)
-{
-    if (is_float) {
-        float *single = fail_alloc((size_t)n * sizeof *single);
-        for (int64_t i = 0; i < n; i++) single[i] = (float)value[i];
-        buffer_write(l->dev, buffer, 0, (size_t)n * sizeof *single, single);
-        free(single);
-    } else {
-        buffer_write(l->dev, buffer, 0, (size_t)n * sizeof *value, value);
-    }
+    return reals_size(l->features.real_is_float);
 }
 
 struct launch *lattice_launch(

@@ -8,6 +8,7 @@
 #define DEMOCLES_LATTICE_H
 
 #include "partition/partition.h"
+#include "device/reals.h"
 #include "lattice_features.h"
 #include "lattice_halo.h"
 
@@ -85,10 +86,6 @@ int64_t lattice_digest(const struct lattice *l, uint64_t *digest);
 /* Bytes of a number of x and of v on this device. */
 size_t lattice_x_bytes(const struct lattice *l);
 size_t lattice_v_bytes(const struct lattice *l);
-/* Writes doubles as numbers of the device. */
-void lattice_put(
-    struct lattice *l, struct buffer *buffer, bool is_float, const double *value, int64_t n);
-
 /* A kernel of a program of this lattice, bound to its tables and state; list: runs that it goes
  * over, NULL: it has none. */
 struct launch *lattice_launch(struct lattice *l, const struct program *program, const char *kernel,

@@ -28,18 +28,18 @@ static void create_release(struct lattice_break *b)
     static const char *const source[] = {"link_release.cl", NULL};
     struct lattice *l = b->l;
     size_t n = (size_t)l->layout->plane;
-    buffer_init(&b->fresh, "lattice fresh breaks");
-    buffer_init(&b->released, "lattice released");
+    buffer_init(&b->fresh, l->dev, "lattice fresh breaks");
+    buffer_init(&b->released, l->dev, "lattice released");
     if (!l->features.energy) return;
     char *text = lattice_features_options(&l->features, l->layout),
          *options = fail_format("%s -DWITH_SUMS=1", text);
     b->program_release = program_build(l->dev, l->comm, "release", options, source);
     free(text);
     free(options);
-    buffer_reserve(l->dev, &b->fresh, n * sizeof(int32_t));
-    buffer_zero(l->dev, &b->fresh);
-    buffer_reserve(l->dev, &b->released, n * sizeof(double));
-    buffer_zero(l->dev, &b->released);
+    buffer_reserve(&b->fresh, n * sizeof(int32_t));
+    buffer_zero(&b->fresh);
+    buffer_reserve(&b->released, n * sizeof(double));
+    buffer_zero(&b->released);
     b->release = lattice_launch(l, b->program_release, "link_release", &l->force_list);
     launch_bind_buffer(b->release, "fate", &b->fate);
     launch_set_real(b->release, "before", share_before(l));
@@ -64,13 +64,13 @@ struct lattice_break *lattice_break_create(struct lattice *l, const struct latti
     b->l = l;
     b->program = program_build(l->dev, l->comm, "breakage", text, source);
     free(text);
-    buffer_init(&b->limit, "lattice strengths");
-    buffer_reserve(l->dev, &b->limit, (size_t)n * lattice_v_bytes(l));
-    lattice_put(l, &b->limit, l->features.real_is_float, limit, n);
+    buffer_init(&b->limit, l->dev, "lattice strengths");
+    buffer_reserve(&b->limit, (size_t)n * lattice_v_bytes(l));
+    reals_write(&b->limit, l->features.real_is_float, 0, (size_t)n, limit);
     free(limit);
-    buffer_init(&b->fate, "lattice fates");
-    buffer_reserve(l->dev, &b->fate, (size_t)l->layout->plane * sizeof(int32_t));
-    buffer_zero(l->dev, &b->fate);
+    buffer_init(&b->fate, l->dev, "lattice fates");
+    buffer_reserve(&b->fate, (size_t)l->layout->plane * sizeof(int32_t));
+    buffer_zero(&b->fate);
     b->judge = lattice_launch(l, b->program, "link_break", NULL);
     launch_bind_buffer(b->judge, "limit", &b->limit);
     launch_bind_buffer(b->judge, "fate", &b->fate);
@@ -91,10 +91,10 @@ void lattice_break_free(struct lattice_break *b)
     launch_free(b->release);
     program_free(b->program);
     program_free(b->program_release);
-    buffer_free(b->l->dev, &b->fresh);
-    buffer_free(b->l->dev, &b->released);
-    buffer_free(b->l->dev, &b->limit);
-    buffer_free(b->l->dev, &b->fate);
+    buffer_free(&b->fresh);
+    buffer_free(&b->released);
+    buffer_free(&b->limit);
+    buffer_free(&b->fate);
     free(b);
 }
 
@@ -103,17 +103,17 @@ void lattice_break_judge(struct lattice_break *b, int64_t x_in, int64_t v_in)
     const struct lattice_layout *c = b->l->layout;
     launch_set_long(b->judge, "x_in", x_in);
     launch_set_long(b->judge, "v_in", v_in);
-    launch_run(b->judge, b->l->dev->compute, (int64_t)(c->n_run - 2) * c->run, 0, NULL, NULL);
+    launch_run(b->judge, (int64_t)(c->n_run - 2) * c->run);
     if (!b->release) return;
     launch_set_long(b->release, "x_in", x_in);
     launch_set_long(b->release, "v_in", v_in);
-    launch_run(b->release, b->l->dev->compute, (int64_t)c->n_force * c->run, 0, NULL, NULL);
+    launch_run(b->release, (int64_t)c->n_force * c->run);
 }
 
 void lattice_break_part(struct lattice_break *b)
 {
     const struct lattice_layout *c = b->l->layout;
-    launch_run(b->part, b->l->dev->compute, (int64_t)c->n_force * c->run, 0, NULL, NULL);
+    launch_run(b->part, (int64_t)c->n_force * c->run);
 }
 
 const char *lattice_break_name(int mode)
@@ -127,7 +127,7 @@ static void read_ints(
 {
     size_t bytes = (size_t)l->layout->plane * sizeof(int32_t);
     int32_t *raw = fail_alloc(bytes);
-    buffer_read(l->dev, buffer, 0, bytes, raw);
+    buffer_read(buffer, 0, bytes, raw);
     for (int64_t k = 0; k < l->layout->n_owned; k++) value[k] = raw[l->layout->index[k]] & mask;
     free(raw);
 }
@@ -143,10 +143,10 @@ static void write_ints(struct lattice *l, struct buffer *buffer, int32_t mask, c
 {
     size_t bytes = (size_t)l->layout->plane * sizeof(int32_t);
     int32_t *raw = fail_alloc(bytes);
-    buffer_read(l->dev, buffer, 0, bytes, raw);
+    buffer_read(buffer, 0, bytes, raw);
     for (int64_t k = 0; k < l->layout->n_owned; k++)
         raw[l->layout->index[k]] = (raw[l->layout->index[k]] & ~mask) | (value[k] & mask);
-    buffer_write(l->dev, buffer, 0, bytes, raw);
+    buffer_write(buffer, 0, bytes, raw);
     free(raw);
 }
 

@@ -16,17 +16,17 @@ static const char *const sources_volume[] = {
 static void put_ints(
     struct lattice *l, struct buffer *buffer, const char *name, const int *value, int64_t n)
 {
-    buffer_init(buffer, name);
-    buffer_reserve(l->dev, buffer, (size_t)n * sizeof *value);
-    buffer_write(l->dev, buffer, 0, (size_t)n * sizeof *value, value);
+    buffer_init(buffer, l->dev, name);
+    buffer_reserve(buffer, (size_t)n * sizeof *value);
+    buffer_write(buffer, 0, (size_t)n * sizeof *value, value);
 }
 
 static void put_table(
     struct lattice *l, struct buffer *buffer, const char *name, double *value, int64_t n)
 {
-    buffer_init(buffer, name);
-    buffer_reserve(l->dev, buffer, (size_t)n * lattice_v_bytes(l));
-    lattice_put(l, buffer, l->features.real_is_float, value, n);
+    buffer_init(buffer, l->dev, name);
+    buffer_reserve(buffer, (size_t)n * lattice_v_bytes(l));
+    reals_write(buffer, l->features.real_is_float, 0, (size_t)n, value);
     free(value);
 }
 
@@ -45,9 +45,9 @@ static void create_state(struct lattice *l)
         l->features.volume ? n_p * n * lattice_v_bytes(l) : 0,
         l->features.energy ? LATTICE_LEDGER * n * sizeof(double) : 0};
     for (int k = 0; k < 6; k++) {
-        buffer_init(all[k], name[k]);
-        buffer_reserve(l->dev, all[k], bytes[k]);
-        buffer_zero(l->dev, all[k]);
+        buffer_init(all[k], l->dev, name[k]);
+        buffer_reserve(all[k], bytes[k]);
+        buffer_zero(all[k]);
     }
 }
 
@@ -82,13 +82,8 @@ static void first_state(struct lattice *l, const struct lattice_cells *cells)
     for (int64_t i = 0; i < plane; i++) one[i] = 1;
     /* no rotation, also of what is not there */
     for (int set = 0; set < (l->features.rk ? 3 : 2) && l->features.turn; set++) {
-        struct buffer part = l->x;
-        float *single = fail_alloc((size_t)plane * sizeof *single);
-        for (int64_t i = 0; i < plane; i++) single[i] = 1;
-        size_t bytes = lattice_x_bytes(l), at = (size_t)(7 * set + 3) * (size_t)plane * bytes;
-        buffer_write(l->dev, &part, at, (size_t)plane * bytes,
-            l->features.position_is_float ? (void *)single : (void *)one);
-        free(single);
+        reals_write(&l->x, l->features.position_is_float, (size_t)((7 * set + 3) * plane),
+            (size_t)plane, one);
     }
     for (int64_t k = 0; k < n; k++)
         for (int a = 0; a < 3; a++) {
@@ -147,14 +142,14 @@ void lattice_free(struct lattice *l)
     device_finish(l->dev);
     struct buffer *all[] = {&l->x, &l->v, &l->sum_x, &l->sum_v, &l->pressure, &l->ledger, &l->word,
         &l->info, &l->base, &l->force_list, &l->volume_list, &l->row, &l->link, &l->cell, &l->kick};
-    lattice_halo_free(l->dev, l->halo);
+    lattice_halo_free(l->halo);
     lattice_break_free(l->breakage);
     lattice_rows_free(l);
     launch_free(l->force);
     launch_free(l->volume);
     launch_free(l->first);
     program_free(l->program);
-    for (size_t k = 0; k < sizeof all / sizeof *all; k++) buffer_free(l->dev, all[k]);
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) buffer_free(all[k]);
     lattice_layout_free(l->layout);
     free(l);
 }

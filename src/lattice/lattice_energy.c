@@ -44,8 +44,8 @@ struct lattice_account *lattice_energy_create(struct lattice *l, const struct la
                                                                       "gravity_y", "gravity_z"};
     struct lattice_account *a = fail_alloc(sizeof *a);
     a->l = l;
-    buffer_init(&a->place, "lattice places");
-    buffer_init(&a->partial, "lattice sums");
+    buffer_init(&a->place, l->dev, "lattice places");
+    buffer_init(&a->partial, l->dev, "lattice sums");
     if (!l->dev->fp64) return a;
     char *text = lattice_features_options(&l->features, l->layout),
          *options = fail_format("%s -DWITH_SUMS=1", text);
@@ -54,11 +54,10 @@ struct lattice_account *lattice_energy_create(struct lattice *l, const struct la
     free(options);
     double *place = places(l, cells);
     size_t bytes = (size_t)l->layout->n_run * 4 * sizeof *place;
-    buffer_reserve(l->dev, &a->place, bytes);
-    buffer_write(l->dev, &a->place, 0, bytes, place);
+    buffer_reserve(&a->place, bytes);
+    buffer_write(&a->place, 0, bytes, place);
     free(place);
-    buffer_reserve(
-        l->dev, &a->partial, (size_t)SUMS_GROUPS * ACCOUNT_WIDTH * SUMS_WIDTH * sizeof(int64_t));
+    buffer_reserve(&a->partial, (size_t)SUMS_GROUPS * ACCOUNT_WIDTH * SUMS_WIDTH * sizeof(int64_t));
     a->launch = lattice_launch(l, a->program, "link_energies", &l->force_list);
     launch_set_batch(a->launch, SUMS_GROUP);
     launch_bind_buffer(a->launch, "place", &a->place);
@@ -78,8 +77,8 @@ void lattice_energy_free(struct lattice_account *a)
     device_finish(a->l->dev);
     launch_free(a->launch);
     program_free(a->program);
-    buffer_free(a->l->dev, &a->place);
-    buffer_free(a->l->dev, &a->partial);
+    buffer_free(&a->place);
+    buffer_free(&a->partial);
     free(a);
 }
 
@@ -108,7 +107,7 @@ void lattice_energy_now(struct lattice_account *a, struct lattice_energy *out)
     if (a->program) {
         lattice_observed_refresh(a->l, false);
         lattice_observed_bind(a->l, a->launch);
-        integer_sums_run(a->l->dev, a->launch, &a->partial, ACCOUNT_WIDTH, sum);
+        integer_sums_run(a->launch, &a->partial, ACCOUNT_WIDTH, sum);
     }
     for (int k = 0; k < ACCOUNT_WIDTH; k++) sum[k].bad += !a->program;
     for (int k = ACCOUNT_WORK; k <= ACCOUNT_RELEASED; k++) sum[k].bad += !a->l->features.energy;

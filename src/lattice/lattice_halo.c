@@ -16,9 +16,9 @@ static void bind(struct launch *launch, const struct lattice_layout *layout, con
 static void upload(
     struct device *dev, struct buffer *buffer, const char *name, const int *data, int64_t n)
 {
-    buffer_init(buffer, name);
-    buffer_reserve(dev, buffer, (size_t)n * sizeof *data);
-    buffer_write(dev, buffer, 0, (size_t)n * sizeof *data, data);
+    buffer_init(buffer, dev, name);
+    buffer_reserve(buffer, (size_t)n * sizeof *data);
+    buffer_write(buffer, 0, (size_t)n * sizeof *data, data);
 }
 
 struct lattice_halo *lattice_halo_create(struct device *dev, const struct comm *comm,
@@ -32,10 +32,10 @@ struct lattice_halo *lattice_halo_create(struct device *dev, const struct comm *
     struct exchange *out = &h->exchange;
     upload(dev, &h->send, "lattice send", layout->send, layout->n_send);
     upload(dev, &h->recv, "lattice receive", layout->recv, layout->n_recv);
-    exchange_init(out, name);
+    exchange_init(out, dev, name);
     exchange_plan(out, comm, layout->count_to);
-    exchange_bind(dev, out,
-        (size_t)n_x * x_bytes + (size_t)n_v * v_bytes + (word ? sizeof(int32_t) : 0), true);
+    exchange_bind(
+        out, (size_t)n_x * x_bytes + (size_t)n_v * v_bytes + (word ? sizeof(int32_t) : 0), true);
     h->pack = launch_create(program, "lattice_pack");
     h->unpack = launch_create(program, "lattice_unpack");
     bind(h->pack, layout, x, v, word);
@@ -49,31 +49,28 @@ struct lattice_halo *lattice_halo_create(struct device *dev, const struct comm *
     return h;
 }
 
-void lattice_halo_free(struct device *dev, struct lattice_halo *h)
+void lattice_halo_free(struct lattice_halo *h)
 {
     if (!h) return;
-    exchange_free(dev, &h->exchange);
-    buffer_free(dev, &h->send);
-    buffer_free(dev, &h->recv);
+    exchange_free(&h->exchange);
+    buffer_free(&h->send);
+    buffer_free(&h->recv);
     launch_free(h->pack);
     launch_free(h->unpack);
     free(h);
 }
 
-void lattice_halo_begin(
-    struct device *dev, struct lattice_halo *h, int64_t x_in, int64_t v_in, struct timers *timers)
+void lattice_halo_begin(struct lattice_halo *h, int64_t x_in, int64_t v_in, struct timers *timers)
 {
     launch_set_long(h->pack, "x_in", x_in);
     launch_set_long(h->pack, "v_in", v_in);
     launch_set_long(h->unpack, "x_in", x_in);
     launch_set_long(h->unpack, "v_in", v_in);
-    exchange_begin(dev, &h->exchange, h->pack, timers);
+    exchange_begin(&h->exchange, h->pack, timers);
 }
 
-void lattice_halo_swap(
-    struct device *dev, struct lattice_halo *h, cl_event *most, struct timers *timers)
+void lattice_halo_swap(struct lattice_halo *h, cl_event *most, struct timers *timers)
 {
-    const cl_event *arrived =
-        exchange_swap(dev, &h->exchange, &h->exchange.arrived, 0, most, timers);
-    launch_run(h->unpack, dev->compute, h->exchange.n_recv, 1, arrived, NULL);
+    const cl_event *arrived = exchange_swap(&h->exchange, &h->exchange.arrived, 0, most, timers);
+    launch_run_on(h->unpack, h->exchange.dev->compute, h->exchange.n_recv, arrived, NULL);
 }

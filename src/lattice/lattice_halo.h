@@ -19,15 +19,13 @@ struct lattice_halo *lattice_halo_create(struct device *dev, const struct comm *
     const struct program *program, const struct lattice_layout *layout, const struct buffer *x,
     int n_x, size_t x_bytes, const struct buffer *v, int n_v, size_t v_bytes,
     const struct buffer *word);
-void lattice_halo_free(struct device *dev, struct lattice_halo *h);
+void lattice_halo_free(struct lattice_halo *h);
 
 /* Packs from the sets of planes that begin with numbers x_in and v_in, reads back, posts
  * receives. */
-void lattice_halo_begin(
-    struct device *dev, struct lattice_halo *h, int64_t x_in, int64_t v_in, struct timers *timers);
+void lattice_halo_begin(struct lattice_halo *h, int64_t x_in, int64_t v_in, struct timers *timers);
 /* After the interior's kernels are enqueued: sends, waits for arrivals, enqueues what puts them in
  * place. `most`: see exchange_swap. */
-void lattice_halo_swap(
-    struct device *dev, struct lattice_halo *h, cl_event *most, struct timers *timers);
+void lattice_halo_swap(struct lattice_halo *h, cl_event *most, struct timers *timers);
 
 #endif

@@ -27,15 +27,14 @@ void lattice_observed_refresh(struct lattice *l, bool with_pressure)
     lattice_rows_send(l, t, t, t);
     if (l->halo) {
         cl_event nothing = NULL;
-        lattice_halo_begin(l->dev, l->halo, x_at(l), v_at(l), l->timers);
-        launch_run(l->force, l->dev->compute, 0, 0, NULL, &nothing);
+        lattice_halo_begin(l->halo, x_at(l), v_at(l), l->timers);
+        launch_run_on(l->force, l->dev->compute, 0, NULL, &nothing);
         device_flush(l->dev);
-        lattice_halo_swap(l->dev, l->halo, &nothing, l->timers);
+        lattice_halo_swap(l->halo, &nothing, l->timers);
     }
     if (!with_pressure || !l->features.volume) return;
     lattice_observed_bind(l, l->volume);
     launch_set_int(l->volume, "first", 0);
     launch_set_int(l->volume, "n", l->layout->n_volume);
-    launch_run(
-        l->volume, l->dev->compute, (int64_t)l->layout->n_volume * l->layout->run, 0, NULL, NULL);
+    launch_run(l->volume, (int64_t)l->layout->n_volume * l->layout->run);
 }

@@ -58,7 +58,7 @@ static void set_damping(struct lattice_relax *r, double alpha)
            *end_only = table + l->scheme->n * r->cells->n_kind * KICK_WIDTH;
     r->f = end_only[0];
     r->g = end_only[1];
-    lattice_put(l, &l->kick, l->features.real_is_float, table, (int64_t)n_kick * KICK_WIDTH);
+    reals_write(&l->kick, l->features.real_is_float, 0, (size_t)n_kick * KICK_WIDTH, table);
     free(table);
 }
 

@@ -19,8 +19,8 @@ void lattice_rows_create(struct lattice *l)
     l->rows.last = fail_alloc(count(l) * sizeof *l->rows.last);
     for (int k = 0; k < LATTICE_SLOTS; k++)
         l->rows.host[k] = fail_alloc(count(l) * lattice_v_bytes(l));
-    buffer_init(&l->rows.buffer, "lattice loads");
-    buffer_reserve(l->dev, &l->rows.buffer, count(l) * lattice_v_bytes(l));
+    buffer_init(&l->rows.buffer, l->dev, "lattice loads");
+    buffer_reserve(&l->rows.buffer, count(l) * lattice_v_bytes(l));
 }
 
 static void settle(struct lattice *l, int slot)
@@ -40,7 +40,7 @@ void lattice_rows_free(struct lattice *l)
     }
     free(l->rows.value);
     free(l->rows.last);
-    buffer_free(l->dev, &l->rows.buffer);
+    buffer_free(&l->rows.buffer);
 }
 
 void lattice_rows_send(struct lattice *l, double t, double from, double to)
@@ -56,6 +56,6 @@ void lattice_rows_send(struct lattice *l, double t, double from, double to)
     if (l->features.real_is_float)
         for (size_t i = 0; i < n; i++) ((float *)l->rows.host[slot])[i] = (float)l->rows.value[i];
     else memcpy(l->rows.host[slot], l->rows.value, n * sizeof *l->rows.value);
-    buffer_write_begin(l->dev, l->dev->compute, &l->rows.buffer, 0, n * lattice_v_bytes(l),
-        l->rows.host[slot], 0, NULL, &l->rows.sent[slot]);
+    buffer_write_begin(&l->rows.buffer, l->dev->compute, 0, n * lattice_v_bytes(l),
+        l->rows.host[slot], NULL, &l->rows.sent[slot]);
 }

@@ -10,33 +10,22 @@
 double *lattice_read_plane(
     const struct lattice *l, const struct buffer *buffer, bool is_float, int64_t number)
 {
-    int64_t n = l->layout->plane;
-    size_t bytes = is_float ? sizeof(float) : sizeof(double);
-    void *raw = fail_alloc((size_t)n * bytes);
+    size_t n = (size_t)l->layout->plane;
+    double *plane = reals_read(buffer, is_float, (size_t)number * n, n);
     double *value = fail_alloc((size_t)l->layout->n_owned * sizeof *value);
-    buffer_read(l->dev, buffer, (size_t)(number * n) * bytes, (size_t)n * bytes, raw);
-    for (int64_t k = 0; k < l->layout->n_owned; k++) {
-        int at = l->layout->index[k];
-        value[k] = is_float ? (double)((float *)raw)[at] : ((double *)raw)[at];
-    }
-    free(raw);
+    for (int64_t k = 0; k < l->layout->n_owned; k++) value[k] = plane[l->layout->index[k]];
+    free(plane);
     return value;
 }
 
 void lattice_write_plane(struct lattice *l, struct buffer *buffer, bool is_float, int64_t number,
     const double *value, int width)
 {
-    int64_t n = l->layout->plane;
-    size_t bytes = is_float ? sizeof(float) : sizeof(double);
-    void *raw = fail_alloc((size_t)n * bytes);
-    buffer_read(l->dev, buffer, (size_t)(number * n) * bytes, (size_t)n * bytes, raw);
-    for (int64_t k = 0; k < l->layout->n_owned; k++) {
-        int at = l->layout->index[k];
-        if (is_float) ((float *)raw)[at] = (float)value[k * width];
-        else ((double *)raw)[at] = value[k * width];
-    }
-    buffer_write(l->dev, buffer, (size_t)(number * n) * bytes, (size_t)n * bytes, raw);
-    free(raw);
+    size_t n = (size_t)l->layout->plane;
+    double *plane = reals_read(buffer, is_float, (size_t)number * n, n);
+    for (int64_t k = 0; k < l->layout->n_owned; k++) plane[l->layout->index[k]] = value[k * width];
+    reals_write(buffer, is_float, (size_t)number * n, n, plane);
+    free(plane);
 }
 
 /* A part of the state: where it is, how wide. */

@@ -21,7 +21,7 @@ static void run(struct lattice *l, struct launch *launch, int first, int n, cl_e
 {
     launch_set_int(launch, "first", first);
     launch_set_int(launch, "n", n);
-    launch_run(launch, l->dev->compute, (int64_t)n * l->layout->run, 0, NULL, done);
+    launch_run_on(launch, l->dev->compute, (int64_t)n * l->layout->run, NULL, done);
 }
 
 /* Forces at set x_in with velocities v_in, and what follows, into x_out and v_out. */
@@ -39,14 +39,14 @@ static void evaluate(struct lattice *l, int x_in, int x_out, int v_in, int v_out
     }
     if (l->halo) {
         int n_first = c->n_force_interior * 3 / 4;
-        lattice_halo_begin(l->dev, l->halo, x_at(l, x_in), v_at(l, v_in), l->timers);
+        lattice_halo_begin(l->halo, x_at(l, x_in), v_at(l, v_in), l->timers);
         trace_part(l->dev->trace, "interior");
         if (l->features.volume) run(l, l->volume, 0, c->n_volume_interior, NULL);
         run(l, l->force, 0, n_first, &most);
         run(l, l->force, n_first, c->n_force_interior - n_first, NULL);
         trace_part(l->dev->trace, NULL);
         device_flush(l->dev);
-        lattice_halo_swap(l->dev, l->halo, &most, l->timers);
+        lattice_halo_swap(l->halo, &most, l->timers);
     }
     int n_volume = l->halo ? c->n_volume_interior : 0, n_force = l->halo ? c->n_force_interior : 0;
     trace_part(l->dev->trace, "boundary");

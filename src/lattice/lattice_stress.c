@@ -22,8 +22,8 @@ struct lattice_stress *lattice_stress_create(struct lattice *l, bool extrapolate
     s->l = l;
     s->program = program_build(l->dev, l->comm, "stress", text, source);
     free(text);
-    buffer_init(&s->stress, "lattice stress");
-    buffer_reserve(l->dev, &s->stress, N_PLANE * (size_t)l->layout->plane * lattice_v_bytes(l));
+    buffer_init(&s->stress, l->dev, "lattice stress");
+    buffer_reserve(&s->stress, N_PLANE * (size_t)l->layout->plane * lattice_v_bytes(l));
     s->launch = lattice_launch(l, s->program, "link_stress", &l->force_list);
     launch_bind_buffer(s->launch, "stress", &s->stress);
     launch_set_int(s->launch, "n", l->layout->n_force);
@@ -37,7 +37,7 @@ void lattice_stress_free(struct lattice_stress *s)
     device_finish(s->l->dev);
     launch_free(s->launch);
     program_free(s->program);
-    buffer_free(s->l->dev, &s->stress);
+    buffer_free(&s->stress);
     free(s);
 }
 
@@ -47,8 +47,7 @@ void lattice_stress_run(struct lattice_stress *s, double (*stress)[9], double *v
     struct lattice *l = s->l;
     lattice_observed_refresh(l, true);
     lattice_observed_bind(l, s->launch);
-    launch_run(
-        s->launch, l->dev->compute, (int64_t)l->layout->n_force * l->layout->run, 0, NULL, NULL);
+    launch_run(s->launch, (int64_t)l->layout->n_force * l->layout->run);
     for (int p = 0; p < N_PLANE; p++) {
         if (p == VON_MISES ? !von_mises : !stress) continue;
         double *value = lattice_read_plane(l, &s->stress, l->features.real_is_float, p);

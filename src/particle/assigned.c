@@ -39,18 +39,18 @@ static void scratch(struct assigned *a, struct buffer *all[SCRATCH])
 
 static void side_init(struct device *dev, struct side *side, int n_rank)
 {
-    buffer_init(&side->pair, "assigned pairs");
-    buffer_init(&side->element, "assigned elements");
-    buffer_reserve(dev, &side->pair, 0);
-    buffer_reserve(dev, &side->element, 0);
+    buffer_init(&side->pair, dev, "assigned pairs");
+    buffer_init(&side->element, dev, "assigned elements");
+    buffer_reserve(&side->pair, 0);
+    buffer_reserve(&side->element, 0);
     side->n_pair = fail_alloc((size_t)n_rank * sizeof *side->n_pair);
     side->n_element = fail_alloc((size_t)n_rank * sizeof *side->n_element);
 }
 
-static void side_free(struct device *dev, struct side *side)
+static void side_free(struct side *side)
 {
-    buffer_free(dev, &side->pair);
-    buffer_free(dev, &side->element);
+    buffer_free(&side->pair);
+    buffer_free(&side->element);
     free(side->n_pair);
     free(side->n_element);
 }
@@ -71,11 +71,11 @@ struct assigned *assigned_create(struct device *dev, const struct comm *comm,
     side_init(dev, &a->there, comm->n_rank);
     scratch(a, all);
     for (int i = 0; i < SCRATCH; i++) {
-        buffer_init(all[i], name[i]);
-        buffer_reserve(dev, all[i], 0);
+        buffer_init(all[i], dev, name[i]);
+        buffer_reserve(all[i], 0);
     }
     for (int w = 0; w < ASSIGNED_N; w++) {
-        exchange_init(&a->exchange[w], exchanged[w]);
+        exchange_init(&a->exchange[w], dev, exchanged[w]);
         a->pack[w] = launch_create(assign, "assign_move");
         a->unpack[w] = launch_create(assign, "assign_move");
     }
@@ -89,44 +89,44 @@ struct assigned *assigned_create(struct device *dev, const struct comm *comm,
     return a;
 }
 
-void assigned_free(struct device *dev, struct assigned *a)
+void assigned_free(struct assigned *a)
 {
     if (!a) return;
     struct buffer *all[SCRATCH];
     struct launch *launch[] = {a->rule, a->order, a->link, a->list, a->use, a->pick, a->number};
     for (int w = 0; w < ASSIGNED_N; w++) {
-        exchange_free(dev, &a->exchange[w]);
+        exchange_free(&a->exchange[w]);
         launch_free(a->pack[w]);
         launch_free(a->unpack[w]);
     }
-    side_free(dev, &a->here);
-    side_free(dev, &a->there);
+    side_free(&a->here);
+    side_free(&a->there);
     scratch(a, all);
-    for (int i = 0; i < SCRATCH; i++) buffer_free(dev, all[i]);
+    for (int i = 0; i < SCRATCH; i++) buffer_free(all[i]);
     for (size_t i = 0; i < sizeof launch / sizeof *launch; i++) launch_free(launch[i]);
     free(a);
 }
 
 /* Elements in segments by rank, begin [n + 1]. */
-static void write_segments(struct device *dev, struct assigned *a, const int64_t *begin, int n)
+static void write_segments(struct assigned *a, const int64_t *begin, int n)
 {
     cl_int *at = fail_alloc(((size_t)n + 1) * sizeof *at);
     for (int s = 0; s <= n; s++) at[s] = (cl_int)begin[s];
-    buffer_reserve(dev, &a->segment, ((size_t)n + 1) * sizeof *at);
-    buffer_write(dev, &a->segment, 0, ((size_t)n + 1) * sizeof *at, at);
+    buffer_reserve(&a->segment, ((size_t)n + 1) * sizeof *at);
+    buffer_write(&a->segment, 0, ((size_t)n + 1) * sizeof *at, at);
     free(at);
 }
 
 /* Boundary pairs of this rank first, then those of others. */
-static void order(struct device *dev, struct assigned *a, struct scan *scan, struct pair_list *l,
-    const struct halo *halo)
+static void order(
+    struct assigned *a, struct scan *scan, struct pair_list *l, const struct halo *halo)
 {
     struct launch *k[] = {a->rule, a->order, a->link};
     size_t n = (size_t)l->n_boundary;
-    buffer_reserve(dev, &a->theirs, (n + 1) * sizeof(cl_int));
-    buffer_reserve(dev, &a->copy, n * sizeof(cl_int2));
-    buffer_reserve(dev, &a->place, n * sizeof(cl_int));
-    write_segments(dev, a, halo->recv_begin, halo->n_recv);
+    buffer_reserve(&a->theirs, (n + 1) * sizeof(cl_int));
+    buffer_reserve(&a->copy, n * sizeof(cl_int2));
+    buffer_reserve(&a->place, n * sizeof(cl_int));
+    write_segments(a, halo->recv_begin, halo->n_recv);
     launch_set_int(a->rule, "n_owned", (int)l->n_owned);
     launch_set_int(a->rule, "n_segment", halo->n_recv);
     launch_set_int(a->link, "n_incidence", (int)l->n_incidence);
@@ -143,12 +143,12 @@ static void order(struct device *dev, struct assigned *a, struct scan *scan, str
         launch_bind_buffer_if(k[i], "place", &a->place);
         launch_bind_buffer_if(k[i], "incidence", &l->incidence);
     }
-    launch_run(a->rule, dev->compute, l->n_boundary, 0, NULL, NULL);
-    l->n_mine = l->n_boundary - scan_total(dev, scan, &a->theirs, l->n_boundary);
+    launch_run(a->rule, l->n_boundary);
+    l->n_mine = l->n_boundary - scan_total(scan, &a->theirs, l->n_boundary);
     l->n_lower = l->n_all; /* who computes a pair counts it */
     launch_set_int(a->order, "n_mine", (int)l->n_mine);
-    launch_run(a->order, dev->compute, l->n_boundary, 0, NULL, NULL);
-    launch_run(a->link, dev->compute, l->n_incidence, 0, NULL, NULL);
+    launch_run(a->order, l->n_boundary);
+    launch_run(a->link, l->n_incidence);
 }
 
 /* Elements in segments by rank, and for each segment the partners that count. */
@@ -161,47 +161,44 @@ struct elements {
 };
 
 /* Adds up by rank what begin [n + 1] counts of each element on the device. */
-static void read_counts(
-    struct device *dev, const struct elements *e, const struct buffer *begin, int64_t *n_of_rank)
+static void read_counts(const struct elements *e, const struct buffer *begin, int64_t *n_of_rank)
 {
     int64_t n = e->begin[e->n_segment];
     cl_int *at = fail_alloc(((size_t)n + 1) * sizeof *at);
-    buffer_read(dev, begin, 0, ((size_t)n + 1) * sizeof *at, at);
+    buffer_read(begin, 0, ((size_t)n + 1) * sizeof *at, at);
     for (int s = 0; s < e->n_segment; s++)
         n_of_rank[e->rank[s]] = at[e->begin[s + 1]] - at[e->begin[s]];
     free(at);
 }
 
 /* The elements that have pairs in the list, a->begin counts how many. */
-static void list_elements(struct device *dev, struct assigned *a, struct scan *scan,
-    const struct elements *e, struct side *side)
+static void list_elements(
+    struct assigned *a, struct scan *scan, const struct elements *e, struct side *side)
 {
     int64_t n = e->begin[e->n_segment];
-    buffer_reserve(dev, &a->used, ((size_t)n + 1) * sizeof(cl_int));
+    buffer_reserve(&a->used, ((size_t)n + 1) * sizeof(cl_int));
     launch_set_int(a->use, "n", (int)n);
     launch_bind_buffer(a->use, "begin", &a->begin);
     launch_bind_buffer(a->use, "used", &a->used);
-    launch_run(a->use, dev->compute, n, 0, NULL, NULL);
-    buffer_reserve(
-        dev, &side->element, (size_t)scan_total(dev, scan, &a->used, n) * sizeof(cl_int));
+    launch_run(a->use, n);
+    buffer_reserve(&side->element, (size_t)scan_total(scan, &a->used, n) * sizeof(cl_int));
     launch_set_int(a->pick, "n", (int)n);
     launch_bind_buffer(a->pick, "used", &a->used);
     launch_bind_buffer(a->pick, "element", e->number);
     launch_bind_buffer(a->pick, "list", &side->element);
-    launch_run(a->pick, dev->compute, n, 0, NULL, NULL);
-    read_counts(dev, e, &a->used, side->n_element);
+    launch_run(a->pick, n);
+    read_counts(e, &a->used, side->n_element);
 }
 
-static void list_side(struct device *dev, struct assigned *a, struct scan *scan,
-    const struct particles *p, const struct pair_list *l, const struct elements *e,
-    struct side *side)
+static void list_side(struct assigned *a, struct scan *scan, const struct particles *p,
+    const struct pair_list *l, const struct elements *e, struct side *side)
 {
     struct launch *k = a->list;
     int64_t n = e->begin[e->n_segment];
-    write_segments(dev, a, e->begin, e->n_segment);
-    buffer_reserve(dev, &a->range, (size_t)e->n_segment * sizeof *e->range);
-    buffer_write(dev, &a->range, 0, (size_t)e->n_segment * sizeof *e->range, e->range);
-    buffer_reserve(dev, &a->begin, ((size_t)n + 1) * sizeof(cl_int));
+    write_segments(a, e->begin, e->n_segment);
+    buffer_reserve(&a->range, (size_t)e->n_segment * sizeof *e->range);
+    buffer_write(&a->range, 0, (size_t)e->n_segment * sizeof *e->range, e->range);
+    buffer_reserve(&a->begin, ((size_t)n + 1) * sizeof(cl_int));
     const struct {
         const char *name;
         const struct buffer *buffer;
@@ -217,35 +214,35 @@ static void list_side(struct device *dev, struct assigned *a, struct scan *scan,
     launch_set_int(k, "is_theirs", side == &a->there);
     launch_set_int(k, "n_segment", e->n_segment);
     launch_set_int(k, "fill", 0);
-    launch_run(k, dev->compute, n, 0, NULL, NULL);
-    buffer_reserve(dev, &side->pair, (size_t)scan_total(dev, scan, &a->begin, n) * sizeof(cl_int));
+    launch_run(k, n);
+    buffer_reserve(&side->pair, (size_t)scan_total(scan, &a->begin, n) * sizeof(cl_int));
     launch_set_int(k, "fill", 1);
-    launch_run(k, dev->compute, n, 0, NULL, NULL);
+    launch_run(k, n);
     for (int r = 0; r < a->comm->n_rank; r++) side->n_pair[r] = side->n_element[r] = 0;
-    read_counts(dev, e, &a->begin, side->n_pair);
-    list_elements(dev, a, scan, e, side);
+    read_counts(e, &a->begin, side->n_pair);
+    list_elements(a, scan, e, side);
 }
 
 /* For the owners of ghosts, by the ghosts in their order. */
-static void list_here(struct device *dev, struct assigned *a, struct scan *scan,
-    const struct particles *p, const struct pair_list *l, const struct halo *halo)
+static void list_here(struct assigned *a, struct scan *scan, const struct particles *p,
+    const struct pair_list *l, const struct halo *halo)
 {
     size_t n = (size_t)halo->n_recv;
     struct elements ghosts = {&a->ghost, halo->n_recv, halo->recv_rank, halo->recv_begin,
         fail_alloc(n * sizeof *ghosts.range)};
     for (size_t s = 0; s < n; s++) ghosts.range[s] = (cl_int2){{0, (cl_int)l->n_owned}};
-    buffer_reserve(dev, &a->ghost, (size_t)p->n_ghost * sizeof(cl_int));
+    buffer_reserve(&a->ghost, (size_t)p->n_ghost * sizeof(cl_int));
     launch_set_int(a->number, "n", (int)p->n_ghost);
     launch_set_int(a->number, "first", (int)l->n_owned);
     launch_bind_buffer(a->number, "value", &a->ghost);
-    launch_run(a->number, dev->compute, p->n_ghost, 0, NULL, NULL);
-    list_side(dev, a, scan, p, l, &ghosts, &a->here);
+    launch_run(a->number, p->n_ghost);
+    list_side(a, scan, p, l, &ghosts, &a->here);
     free(ghosts.range);
 }
 
 /* For the elements that are ghosts elsewhere, in the order in which they are sent there. */
-static void list_there(struct device *dev, struct assigned *a, struct scan *scan,
-    const struct particles *p, const struct pair_list *l, const struct ghosts *ghosts)
+static void list_there(struct assigned *a, struct scan *scan, const struct particles *p,
+    const struct pair_list *l, const struct ghosts *ghosts)
 {
     const struct halo *halo = ghosts->exchange.halo;
     size_t n = (size_t)halo->n_send;
@@ -256,7 +253,7 @@ static void list_there(struct device *dev, struct assigned *a, struct scan *scan
             if (halo->recv_rank[r] == halo->send_rank[s])
                 sent.range[s] = (cl_int2){{(cl_int)(l->n_owned + halo->recv_begin[r]),
                     (cl_int)(l->n_owned + halo->recv_begin[r + 1])}};
-    list_side(dev, a, scan, p, l, &sent, &a->there);
+    list_side(a, scan, p, l, &sent, &a->there);
     free(sent.range);
 }
 
@@ -282,8 +279,8 @@ static void set_moves(struct assigned *a, enum assigned_way way, const struct bu
 }
 
 /* count_from: what this rank expects, for both ranks have decided alike. */
-static void plan(struct device *dev, struct assigned *a, enum assigned_way way,
-    const int64_t *count_to, const int64_t *count_from, const struct buffer *plane, size_t record)
+static void plan(struct assigned *a, enum assigned_way way, const int64_t *count_to,
+    const int64_t *count_from, const struct buffer *plane, size_t record)
 {
     struct exchange *x = &a->exchange[way];
     int64_t n = 0;
@@ -293,65 +290,63 @@ static void plan(struct device *dev, struct assigned *a, enum assigned_way way,
                x->halo->recv_begin[k + 1] - x->halo->recv_begin[k]);
     for (int r = 0; r < a->comm->n_rank; r++) n += count_from[r];
     assert(n == x->n_recv);
-    exchange_bind(dev, x, record, true);
+    exchange_bind(x, record, true);
     set_moves(a, way, plane, 1, record, 0);
 }
 
-void assigned_build(struct device *dev, struct assigned *a, struct scan *scan,
-    const struct particles *p, struct pairs *pairs, const struct ghosts *ghosts)
+void assigned_build(struct assigned *a, struct scan *scan, const struct particles *p,
+    struct pairs *pairs, const struct ghosts *ghosts)
 {
     struct pair_list *l = &pairs->now;
     const struct field *state = &p->field[FIELD_STATE];
-    order(dev, a, scan, l, ghosts->exchange.halo);
-    list_here(dev, a, scan, p, l, ghosts->exchange.halo);
-    list_there(dev, a, scan, p, l, ghosts);
-    plan(dev, a, ASSIGNED_STATES, a->there.n_element, a->here.n_element, &state->now, state->bytes);
-    plan(dev, a, ASSIGNED_RESULTS, a->here.n_pair, a->there.n_pair, &pairs->result,
+    order(a, scan, l, ghosts->exchange.halo);
+    list_here(a, scan, p, l, ghosts->exchange.halo);
+    list_there(a, scan, p, l, ghosts);
+    plan(a, ASSIGNED_STATES, a->there.n_element, a->here.n_element, &state->now, state->bytes);
+    plan(a, ASSIGNED_RESULTS, a->here.n_pair, a->there.n_pair, &pairs->result,
         (size_t)pairs->layout.result * a->real);
 }
 
-void assigned_begin(
-    struct device *dev, struct assigned *a, enum assigned_way way, struct timers *timers)
+void assigned_begin(struct assigned *a, enum assigned_way way, struct timers *timers)
 {
-    exchange_begin(dev, &a->exchange[way], a->pack[way], timers);
+    exchange_begin(&a->exchange[way], a->pack[way], timers);
 }
 
-void assigned_swap(struct device *dev, struct assigned *a, enum assigned_way way, cl_event *most,
-    struct timers *timers)
+void assigned_swap(struct assigned *a, enum assigned_way way, cl_event *most, struct timers *timers)
 {
     struct exchange *x = &a->exchange[way];
-    const cl_event *arrived = exchange_swap(dev, x, &x->arrived, 0, most, timers);
-    launch_run(a->unpack[way], dev->compute, x->n_recv, 1, arrived, NULL);
+    const cl_event *arrived = exchange_swap(x, &x->arrived, 0, most, timers);
+    launch_run_on(a->unpack[way], x->dev->compute, x->n_recv, arrived, NULL);
 }
 
 /* One array of planes, along the way of results. */
-static void send_planes(struct device *dev, struct assigned *a, const struct buffer *plane,
-    int width, size_t number, int64_t capacity)
+static void send_planes(
+    struct assigned *a, const struct buffer *plane, int width, size_t number, int64_t capacity)
 {
     struct exchange *x = &a->exchange[ASSIGNED_RESULTS];
     size_t bytes = (size_t)width * number, n_send = (size_t)x->n_send * bytes,
            n_recv = (size_t)x->n_recv * bytes;
     if (width == 0) return;
     char *send = fail_alloc(n_send), *recv = fail_alloc(n_recv);
-    buffer_reserve(dev, &x->packed, n_send);
-    buffer_reserve(dev, &x->arrived, n_recv);
+    buffer_reserve(&x->packed, n_send);
+    buffer_reserve(&x->arrived, n_recv);
     set_moves(a, ASSIGNED_RESULTS, plane, width, number, capacity);
-    launch_run(a->pack[ASSIGNED_RESULTS], dev->compute, x->n_send, 0, NULL, NULL);
-    buffer_read(dev, &x->packed, 0, n_send, send);
+    launch_run(a->pack[ASSIGNED_RESULTS], x->n_send);
+    buffer_read(&x->packed, 0, n_send, send);
     halo_exchange(x->halo, send, recv, bytes);
-    buffer_write(dev, &x->arrived, 0, n_recv, recv);
-    launch_run(a->unpack[ASSIGNED_RESULTS], dev->compute, x->n_recv, 0, NULL, NULL);
+    buffer_write(&x->arrived, 0, n_recv, recv);
+    launch_run(a->unpack[ASSIGNED_RESULTS], x->n_recv);
     free(send);
     free(recv);
 }
 
-void assigned_complete(struct device *dev, struct assigned *a, struct pairs *pairs)
+void assigned_complete(struct assigned *a, struct pairs *pairs)
 {
     struct pair_list *l = &pairs->now;
-    for (int w = 0; w < ASSIGNED_N; w++) exchange_settle(dev, &a->exchange[w]);
+    for (int w = 0; w < ASSIGNED_N; w++) exchange_settle(&a->exchange[w]);
     if (!pairs->layout.remembers) return;
-    send_planes(dev, a, &l->state, 1, sizeof(cl_int), l->capacity);
-    send_planes(dev, a, &l->history, pairs->layout.history, a->real, l->capacity);
+    send_planes(a, &l->state, 1, sizeof(cl_int), l->capacity);
+    send_planes(a, &l->history, pairs->layout.history, a->real, l->capacity);
 }
 
 const struct exchange *assigned_exchange(const struct assigned *a, enum assigned_way way)

@@ -24,23 +24,22 @@ enum assigned_way { ASSIGNED_STATES, ASSIGNED_RESULTS, ASSIGNED_N };
 /* assign: program of assign.cl; lists: that with records.cl. */
 struct assigned *assigned_create(struct device *dev, const struct comm *comm,
     const struct program *assign, const struct program *lists, size_t real);
-void assigned_free(struct device *dev, struct assigned *a); /* NULL is fine */
+void assigned_free(struct assigned *a); /* NULL is fine */
 
 /* Orders pairs->now, new from pairs_build, by who computes what, and plans what travels. Nothing
  * may be under way. Collective. */
-void assigned_build(struct device *dev, struct assigned *a, struct scan *scan,
-    const struct particles *p, struct pairs *pairs, const struct ghosts *ghosts);
+void assigned_build(struct assigned *a, struct scan *scan, const struct particles *p,
+    struct pairs *pairs, const struct ghosts *ghosts);
 
 /* Within a step, each way in turn: enqueues packing and its read-back, posts receives. */
-void assigned_begin(
-    struct device *dev, struct assigned *a, enum assigned_way way, struct timers *timers);
+void assigned_begin(struct assigned *a, enum assigned_way way, struct timers *timers);
 /* Sends, waits for arrivals, enqueues what puts them in place. `most`: see exchange_swap. */
-void assigned_swap(struct device *dev, struct assigned *a, enum assigned_way way, cl_event *most,
-    struct timers *timers);
+void assigned_swap(
+    struct assigned *a, enum assigned_way way, cl_event *most, struct timers *timers);
 
 /* States and histories of all pairs of pairs->now to the ranks that do not compute them, before
  * lists are built anew: nothing is under way afterwards. Collective. */
-void assigned_complete(struct device *dev, struct assigned *a, struct pairs *pairs);
+void assigned_complete(struct assigned *a, struct pairs *pairs);
 
 const struct exchange *assigned_exchange(const struct assigned *a, enum assigned_way way);
 

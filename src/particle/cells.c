@@ -17,15 +17,15 @@ struct cells *cells_create(struct device *dev, const struct features *features,
     static const char *const name[] = {"grid", "grid, integers", "cell of element", "cell begin",
         "cell cursor", "cell member", "bounds"};
     for (int i = 0; i < 7; i++) {
-        buffer_init(all[i], name[i]);
-        buffer_reserve(dev, all[i], 0);
+        buffer_init(all[i], dev, name[i]);
+        buffer_reserve(all[i], 0);
     }
     c->features = features;
     memcpy(c->period, period, sizeof c->period);
     memcpy(c->domain, domain, sizeof c->domain);
-    buffer_reserve(dev, &c->grid_real, CELLS_LEVELS * GRID_REALS * sizeof(double));
-    buffer_reserve(dev, &c->grid_int, CELLS_LEVELS * GRID_INTS * sizeof(cl_int));
-    buffer_reserve(dev, &c->partial, BOUNDS_GROUPS * BOUNDS_WIDTH * sizeof(double));
+    buffer_reserve(&c->grid_real, CELLS_LEVELS * GRID_REALS * sizeof(double));
+    buffer_reserve(&c->grid_int, CELLS_LEVELS * GRID_INTS * sizeof(cl_int));
+    buffer_reserve(&c->partial, BOUNDS_GROUPS * BOUNDS_WIDTH * sizeof(double));
     c->bounds = launch_create(lists, "select_bounds");
     c->count = launch_create(lists, "cell_count");
     c->fill = launch_create(lists, "cell_fill");
@@ -48,19 +48,18 @@ struct cells *cells_create(struct device *dev, const struct features *features,
     return c;
 }
 
-void cells_free(struct device *dev, struct cells *c)
+void cells_free(struct cells *c)
 {
     if (!c) return;
     struct buffer *all[] = {
         &c->grid_real, &c->grid_int, &c->key, &c->begin, &c->cursor, &c->member, &c->partial};
-    for (int i = 0; i < 7; i++) buffer_free(dev, all[i]);
+    for (int i = 0; i < 7; i++) buffer_free(all[i]);
     struct launch *launch[] = {c->bounds, c->count, c->fill, c->order, c->copy};
     for (int i = 0; i < 5; i++) launch_free(launch[i]);
     free(c);
 }
 
-struct cells_bounds cells_bounds(
-    struct device *dev, struct cells *c, const struct particles *p, int64_t n)
+struct cells_bounds cells_bounds(struct cells *c, const struct particles *p, int64_t n)
 {
     struct cells_bounds b = {
         {INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, INFINITY, 0, 0, false};
@@ -69,9 +68,9 @@ struct cells_bounds cells_bounds(
     launch_bind_buffer(c->bounds, "position", &p->field[FIELD_STATE].now);
     launch_bind_buffer(c->bounds, "motion", &p->field[FIELD_STATE].now);
     launch_bind_buffer(c->bounds, "reach", &p->reach);
-    launch_run(c->bounds, dev->compute, BOUNDS_GROUPS * GROUP, 0, NULL, NULL);
-    double *part = particles_read(
-        dev, &c->partial, c->features->position_is_float, 0, BOUNDS_GROUPS * BOUNDS_WIDTH);
+    launch_run(c->bounds, BOUNDS_GROUPS * GROUP);
+    double *part =
+        reals_read(&c->partial, c->features->position_is_float, 0, BOUNDS_GROUPS * BOUNDS_WIDTH);
     for (int g = 0; g < BOUNDS_GROUPS; g++) {
         const double *x = part + g * BOUNDS_WIDTH;
         if (x[7] < -1e29) continue; /* a group without elements */
@@ -116,36 +115,35 @@ static void set_level(const struct cells *c, const struct cells_bounds *b, doubl
     *n_cell += cells;
 }
 
-static void write_grid(
-    struct device *dev, struct cells *c, const double *real, const cl_int *integer)
+static void write_grid(struct cells *c, const double *real, const cl_int *integer)
 {
-    particles_write(dev, &c->grid_real, c->features->position_is_float, 0,
-        (size_t)c->n_level * GRID_REALS, real);
-    buffer_write(dev, &c->grid_int, 0, (size_t)c->n_level * GRID_INTS * sizeof(cl_int), integer);
-    buffer_reserve(dev, &c->begin, ((size_t)c->n_cell + 2) * sizeof(cl_int));
-    buffer_reserve(dev, &c->cursor, ((size_t)c->n_cell + 2) * sizeof(cl_int));
-    buffer_zero(dev, &c->begin);
+    reals_write(
+        &c->grid_real, c->features->position_is_float, 0, (size_t)c->n_level * GRID_REALS, real);
+    buffer_write(&c->grid_int, 0, (size_t)c->n_level * GRID_INTS * sizeof(cl_int), integer);
+    buffer_reserve(&c->begin, ((size_t)c->n_cell + 2) * sizeof(cl_int));
+    buffer_reserve(&c->cursor, ((size_t)c->n_cell + 2) * sizeof(cl_int));
+    buffer_zero(&c->begin);
 }
 
-static void fill(struct device *dev, struct cells *c, struct scan *scan, int64_t n, int64_t n_cell)
+static void fill(struct cells *c, struct scan *scan, int64_t n, int64_t n_cell)
 {
-    scan_run(dev, scan, &c->begin, n_cell);
+    scan_run(scan, &c->begin, n_cell);
     launch_set_int(c->copy, "n", (int)n_cell);
-    launch_run(c->copy, dev->compute, n_cell, 0, NULL, NULL);
+    launch_run(c->copy, n_cell);
     launch_set_int(c->fill, "n", (int)n);
-    launch_run(c->fill, dev->compute, n, 0, NULL, NULL);
+    launch_run(c->fill, n);
 }
 
-static void reserve(struct device *dev, struct cells *c, int64_t n)
+static void reserve(struct cells *c, int64_t n)
 {
-    buffer_reserve(dev, &c->key, (size_t)n * sizeof(cl_int));
-    buffer_reserve(dev, &c->member, (size_t)n * sizeof(cl_int));
+    buffer_reserve(&c->key, (size_t)n * sizeof(cl_int));
+    buffer_reserve(&c->member, (size_t)n * sizeof(cl_int));
 }
 
 /* Levels halve the reach from the largest down, as long as there may be elements; an element
  * searches its own and all other levels. */
-void cells_sort(struct device *dev, struct cells *c, struct scan *scan, const struct particles *p,
-    int64_t n, const struct cells_bounds *b)
+void cells_sort(struct cells *c, struct scan *scan, const struct particles *p, int64_t n,
+    const struct cells_bounds *b)
 {
     double real[CELLS_LEVELS * GRID_REALS];
     cl_int integer[CELLS_LEVELS * GRID_INTS];
@@ -158,18 +156,18 @@ void cells_sort(struct device *dev, struct cells *c, struct scan *scan, const st
         set_level(c, b, 2 * reach, reach, 2 * n + 1000, real + c->n_level * GRID_REALS,
             integer + c->n_level * GRID_INTS, &c->n_cell);
     }
-    write_grid(dev, c, real, integer);
-    reserve(dev, c, n);
+    write_grid(c, real, integer);
+    reserve(c, n);
     launch_set_int(c->count, "n", (int)n);
     launch_set_int(c->count, "n_level", c->n_level);
     launch_bind_buffer(c->count, "position", &p->field[FIELD_STATE].now);
     launch_bind_buffer(c->count, "reach", &p->reach);
-    launch_run(c->count, dev->compute, n, 0, NULL, NULL);
-    fill(dev, c, scan, n, c->n_cell);
+    launch_run(c->count, n);
+    fill(c, scan, n, c->n_cell);
 }
 
-void cells_order(struct device *dev, struct cells *c, struct scan *scan, const struct particles *p,
-    int64_t n, const struct cells_bounds *b, const struct buffer *keep)
+void cells_order(struct cells *c, struct scan *scan, const struct particles *p, int64_t n,
+    const struct cells_bounds *b, const struct buffer *keep)
 {
     double real[GRID_REALS];
     cl_int integer[GRID_INTS];
@@ -178,12 +176,12 @@ void cells_order(struct device *dev, struct cells *c, struct scan *scan, const s
     c->n_cell = 0;
     set_level(c, b, 2 * b->reach_min, b->reach_max, n + 1000, real, integer, &c->n_cell);
     c->n_cell++; /* for those that leave */
-    write_grid(dev, c, real, integer);
-    reserve(dev, c, n);
+    write_grid(c, real, integer);
+    reserve(c, n);
     launch_set_int(c->order, "n", (int)n);
     launch_set_int(c->order, "n_cell", (int)c->n_cell - 1);
     launch_bind_buffer(c->order, "position", &p->field[FIELD_STATE].now);
     launch_bind_buffer(c->order, "keep", keep);
-    launch_run(c->order, dev->compute, n, 0, NULL, NULL);
-    fill(dev, c, scan, n, c->n_cell);
+    launch_run(c->order, n);
+    fill(c, scan, n, c->n_cell);
 }

@@ -31,20 +31,18 @@ struct cells {
 
 struct cells *cells_create(struct device *dev, const struct features *features,
     const struct program *lists, const double period[3], const double domain[6]);
-void cells_free(struct device *dev, struct cells *cells);
+void cells_free(struct cells *cells);
 
 /* Bounds of the first n elements; reach as it stands. Blocking. low > high for n = 0. */
-struct cells_bounds cells_bounds(
-    struct device *dev, struct cells *cells, const struct particles *p, int64_t n);
+struct cells_bounds cells_bounds(struct cells *cells, const struct particles *p, int64_t n);
 
 /* Sorts the first n elements by cell; levels and sizes follow from the bounds. */
-void cells_sort(struct device *dev, struct cells *cells, struct scan *scan,
-    const struct particles *p, int64_t n, const struct cells_bounds *bounds);
+void cells_sort(struct cells *cells, struct scan *scan, const struct particles *p, int64_t n,
+    const struct cells_bounds *bounds);
 
 /* Storage order: cells->member gets the elements with keep[i] != 0 cell by cell, the others
  * last. */
-void cells_order(struct device *dev, struct cells *cells, struct scan *scan,
-    const struct particles *p, int64_t n, const struct cells_bounds *bounds,
-    const struct buffer *keep);
+void cells_order(struct cells *cells, struct scan *scan, const struct particles *p, int64_t n,
+    const struct cells_bounds *bounds, const struct buffer *keep);
 
 #endif

@@ -6,16 +6,16 @@ struct contact_layout contact_layout(struct device *dev, const struct program *p
     struct buffer out;
     cl_int value[3];
     struct launch *launch = launch_create(program, "layout");
-    buffer_init(&out, "layout");
-    buffer_reserve(dev, &out, sizeof value);
+    buffer_init(&out, dev, "layout");
+    buffer_reserve(&out, sizeof value);
     launch_bind_buffer(launch, "out", &out);
-    launch_run(launch, dev->compute, 1, 0, NULL, NULL);
-    buffer_read(dev, &out, 0, sizeof value, value);
+    launch_run(launch, 1);
+    buffer_read(&out, 0, sizeof value, value);
     layout.history = value[0];
     layout.result = value[1];
     layout.remembers = value[2] != 0;
     launch_free(launch);
-    buffer_free(dev, &out);
+    buffer_free(&out);
     return layout;
 }
 
@@ -23,13 +23,13 @@ void contact_arrivals_init(struct device *dev, struct contact_arrivals *a, const
 {
     struct buffer *all[] = {&a->begin, &a->key, &a->state, &a->history};
     for (int i = 0; i < 4; i++) {
-        buffer_init(all[i], name);
-        buffer_reserve(dev, all[i], 64);
+        buffer_init(all[i], dev, name);
+        buffer_reserve(all[i], 64);
     }
 }
 
-void contact_arrivals_free(struct device *dev, struct contact_arrivals *a)
+void contact_arrivals_free(struct contact_arrivals *a)
 {
     struct buffer *all[] = {&a->begin, &a->key, &a->state, &a->history};
-    for (int i = 0; i < 4; i++) buffer_free(dev, all[i]);
+    for (int i = 0; i < 4; i++) buffer_free(all[i]);
 }

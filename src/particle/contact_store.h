@@ -24,6 +24,6 @@ struct contact_arrivals {
 };
 
 void contact_arrivals_init(struct device *dev, struct contact_arrivals *a, const char *name);
-void contact_arrivals_free(struct device *dev, struct contact_arrivals *a);
+void contact_arrivals_free(struct contact_arrivals *a);
 
 #endif

@@ -35,9 +35,9 @@ struct energy *energy_create(struct sim *s)
     struct particle_run *run = s->particle;
     static const char *const source[] = {"sums.cl", NULL};
     struct energy *e = fail_alloc(sizeof *e);
-    buffer_init(&e->partial, "sums");
-    buffer_init(&e->gone_id, "gone elements");
-    buffer_init(&e->gone_wall, "gone walls");
+    buffer_init(&e->partial, s->dev, "sums");
+    buffer_init(&e->gone_id, s->dev, "gone elements");
+    buffer_init(&e->gone_wall, s->dev, "gone walls");
     for (int a = 0; a < 3; a++)
         e->wraps |= run->features.periodic[a] && fabs(s->scene->gravity[a]) > 0;
     if (!s->dev->fp64) return e;
@@ -56,24 +56,23 @@ struct energy *energy_create(struct sim *s)
         launch_set_real(e->elements, gravity[a], s->scene->gravity[a]);
         launch_set_real(e->elements, origin[a], run->domain[a]);
     }
-    buffer_reserve(
-        s->dev, &e->partial, (size_t)SUMS_GROUPS * SUMS_ELEMENT * SUMS_WIDTH * sizeof(int64_t));
-    buffer_reserve(s->dev, &e->gone_id, 0);
-    buffer_reserve(s->dev, &e->gone_wall, 0);
+    buffer_reserve(&e->partial, (size_t)SUMS_GROUPS * SUMS_ELEMENT * SUMS_WIDTH * sizeof(int64_t));
+    buffer_reserve(&e->gone_id, 0);
+    buffer_reserve(&e->gone_wall, 0);
     struct launch *all[] = {e->elements, e->ledger, e->gone, e->gone_walls};
     for (int i = 0; i < 4; i++) launch_bind_buffer(all[i], "partial", &e->partial);
     return e;
 }
 
-void energy_free(struct device *dev, struct energy *e)
+void energy_free(struct energy *e)
 {
     if (!e) return;
     struct launch *launch[] = {e->elements, e->ledger, e->gone, e->gone_walls};
     for (int i = 0; i < 4; i++) launch_free(launch[i]);
     program_free(e->program);
-    buffer_free(dev, &e->partial);
-    buffer_free(dev, &e->gone_id);
-    buffer_free(dev, &e->gone_wall);
+    buffer_free(&e->partial);
+    buffer_free(&e->gone_id);
+    buffer_free(&e->gone_wall);
     free(e);
 }
 
@@ -85,7 +84,7 @@ static void sum_elements(struct sim *s, struct sum sum[SUMS_ELEMENT])
     launch_set_int(k, "n", (int)p->n_owned);
     launch_bind_buffer(k, "position", &p->field[FIELD_STATE].now);
     launch_bind_buffer(k, "motion", &p->field[FIELD_STATE].now);
-    integer_sums_run(s->dev, k, &run->energy->partial, SUMS_ELEMENT, sum);
+    integer_sums_run(k, &run->energy->partial, SUMS_ELEMENT, sum);
 }
 
 /* Which contacts a kernel goes over: the pairs that count on this rank, or all candidates at
@@ -112,7 +111,7 @@ static struct sum collect(struct sim *s)
     struct energy *e = run->energy;
     for (int wall = 0; wall < (run->wall_contacts ? 2 : 1); wall++) {
         set_contacts(e->ledger, s, wall);
-        integer_sums_run(s->dev, e->ledger, &e->partial, LEDGER_WIDTH, sum);
+        integer_sums_run(e->ledger, &e->partial, LEDGER_WIDTH, sum);
     }
     elastic = sum[LEDGER_ELASTIC];
     sum[LEDGER_ELASTIC] = (struct sum){0};
@@ -153,8 +152,8 @@ static int64_t share_gone(struct sim *s)
     for (size_t i = 0; i < n_all; i++)
         if (all[i] >= 0) all[n++] = all[i];
     qsort(all, (size_t)n, sizeof *all, by_number);
-    buffer_reserve(s->dev, &run->energy->gone_id, (size_t)n * sizeof *all);
-    buffer_write(s->dev, &run->energy->gone_id, 0, (size_t)n * sizeof *all, all);
+    buffer_reserve(&run->energy->gone_id, (size_t)n * sizeof *all);
+    buffer_write(&run->energy->gone_id, 0, (size_t)n * sizeof *all, all);
     free(mine);
     free(all);
     return n;
@@ -174,7 +173,7 @@ static void remove_springs(struct sim *s, int64_t n_gone)
         set_contacts(e->gone, s, wall);
         launch_bind_buffer(
             e->gone, "partner", wall ? &run->wall_contacts->now.element : &run->pairs->now.pair_j);
-        integer_sums_run(s->dev, e->gone, &e->partial, 1, &e->total.removed);
+        integer_sums_run(e->gone, &e->partial, 1, &e->total.removed);
     }
 }
 
@@ -190,15 +189,15 @@ static void remove_walls(struct sim *s)
     for (int k = 0; k < w->walls->n_wall; k++)
         any |= gone[k] = w->room_host[k] >= 0 && !pose[k].active;
     if (any) {
-        buffer_reserve(s->dev, &e->gone_wall, bytes);
-        buffer_write(s->dev, &e->gone_wall, 0, bytes, gone);
+        buffer_reserve(&e->gone_wall, bytes);
+        buffer_write(&e->gone_wall, 0, bytes, gone);
         launch_set_int(e->gone_walls, "n", (int)w->now.n);
         launch_set_int(e->gone_walls, "capacity", (int)w->now.capacity);
         launch_bind_buffer(e->gone_walls, "candidate", &w->now.candidate);
         launch_bind_buffer(e->gone_walls, "wall_of", &w->wall_of);
         launch_bind_buffer(e->gone_walls, "gone_wall", &e->gone_wall);
         launch_bind_buffer(e->gone_walls, "ledger", &w->ledger);
-        integer_sums_run(s->dev, e->gone_walls, &e->partial, 1, &e->total.removed);
+        integer_sums_run(e->gone_walls, &e->partial, 1, &e->total.removed);
     }
     free(gone);
 }

@@ -36,7 +36,7 @@ struct energy_sums {
 
 /* Collective. Before or after the lists; needs s->dev, features, scene, domain, wall_contacts. */
 struct energy *energy_create(struct sim *s);
-void energy_free(struct device *dev, struct energy *e); /* NULL is fine */
+void energy_free(struct energy *e); /* NULL is fine */
 
 /* The three below are for runs with features.energy. Before lists are rebuilt and before elements
  * change owners: moves the losses in both ledgers to this rank's totals. Not collective. */

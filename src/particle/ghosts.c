@@ -15,11 +15,11 @@ struct ghosts *ghosts_create(struct device *dev, const struct comm *comm,
     memcpy(g->period, period, sizeof g->period);
     static const char *const name[] = {
         "ghost pack", "ghosts arrived", "ghost send", "ghost receive"};
-    exchange_init(&g->exchange, name);
-    buffer_init(&g->index, "ghost index");
-    buffer_init(&g->pick, "ghost pick");
-    buffer_reserve(dev, &g->index, 64);
-    buffer_reserve(dev, &g->pick, 64);
+    exchange_init(&g->exchange, dev, name);
+    buffer_init(&g->index, dev, "ghost index");
+    buffer_init(&g->pick, dev, "ghost pick");
+    buffer_reserve(&g->index, 64);
+    buffer_reserve(&g->pick, 64);
     g->select = launch_create(lists, "select_ghosts");
     g->compact = launch_create(lists, "record_select");
     g->gather = launch_create(lists, "record_gather");
@@ -29,12 +29,12 @@ struct ghosts *ghosts_create(struct device *dev, const struct comm *comm,
     return g;
 }
 
-void ghosts_free(struct device *dev, struct ghosts *g)
+void ghosts_free(struct ghosts *g)
 {
     if (!g) return;
-    exchange_free(dev, &g->exchange);
-    buffer_free(dev, &g->index);
-    buffer_free(dev, &g->pick);
+    exchange_free(&g->exchange);
+    buffer_free(&g->index);
+    buffer_free(&g->pick);
     launch_free(g->select);
     launch_free(g->compact);
     launch_free(g->gather);
@@ -67,8 +67,8 @@ static bool may_meet(const struct ghosts *g, const struct box *a, const struct b
 }
 
 /* The owned elements that `rank` with `box` needs, into `piece`; returns how many. */
-static int64_t select_for(struct device *dev, struct ghosts *g, struct scan *scan,
-    const struct particles *p, int rank, const struct box *box, struct buffer *piece)
+static int64_t select_for(struct ghosts *g, struct scan *scan, const struct particles *p, int rank,
+    const struct box *box, struct buffer *piece)
 {
     static const char *const low[] = {"low_x", "low_y", "low_z"}, *const high[] = {
                                                                       "high_x", "high_y", "high_z"};
@@ -82,69 +82,69 @@ static int64_t select_for(struct device *dev, struct ghosts *g, struct scan *sca
         launch_set_real(g->select, high[a], box->high[a]);
     }
     launch_set_real(g->select, "far_reach", box->reach);
-    launch_run(g->select, dev->compute, p->n_owned, 0, NULL, NULL);
-    int64_t n = scan_total(dev, scan, &g->pick, p->n_owned);
-    buffer_reserve(dev, piece, (size_t)n * sizeof(cl_int));
+    launch_run(g->select, p->n_owned);
+    int64_t n = scan_total(scan, &g->pick, p->n_owned);
+    buffer_reserve(piece, (size_t)n * sizeof(cl_int));
     launch_set_int(g->compact, "n", (int)p->n_owned);
     launch_bind_buffer(g->compact, "at", &g->pick);
     launch_bind_buffer(g->compact, "index", piece);
-    launch_run(g->compact, dev->compute, p->n_owned, 0, NULL, NULL);
+    launch_run(g->compact, p->n_owned);
     return n;
 }
 
 /* Sends rows of `from` picked by g->index to their neighbours and stores what comes in at row
  * n_owned of it. */
-static void exchange_rows(struct device *dev, struct ghosts *g, const struct particles *p,
-    struct buffer *from, size_t bytes)
+static void exchange_rows(
+    struct ghosts *g, const struct particles *p, struct buffer *from, size_t bytes)
 {
     struct exchange *x = &g->exchange;
     char *send = fail_alloc((size_t)x->n_send * bytes),
          *recv = fail_alloc((size_t)x->n_recv * bytes);
-    buffer_reserve(dev, &x->packed, (size_t)x->n_send * bytes);
+    buffer_reserve(&x->packed, (size_t)x->n_send * bytes);
     launch_set_int(g->gather, "n", (int)x->n_send);
     launch_set_int(g->gather, "words", (int)(bytes / 4));
     launch_bind_buffer(g->gather, "index", &g->index);
     launch_bind_buffer(g->gather, "from", from);
     launch_bind_buffer(g->gather, "to", &x->packed);
-    launch_run(g->gather, dev->compute, x->n_send, 0, NULL, NULL);
-    buffer_read(dev, &x->packed, 0, (size_t)x->n_send * bytes, send);
+    launch_run(g->gather, x->n_send);
+    buffer_read(&x->packed, 0, (size_t)x->n_send * bytes, send);
     halo_exchange(x->halo, send, recv, bytes);
-    buffer_write(dev, from, (size_t)p->n_owned * bytes, (size_t)x->n_recv * bytes, recv);
+    buffer_write(from, (size_t)p->n_owned * bytes, (size_t)x->n_recv * bytes, recv);
     free(send);
     free(recv);
 }
 
 /* The index lists for all neighbours, one after the other, on the device. */
-static void choose(struct device *dev, struct ghosts *g, struct scan *scan,
-    const struct particles *p, const struct box *all, int64_t *count_to)
+static void choose(struct ghosts *g, struct scan *scan, const struct particles *p,
+    const struct box *all, int64_t *count_to)
 {
     const struct comm *comm = g->comm;
     cl_int *index = NULL;
     int64_t n_send = 0;
     struct buffer piece;
-    buffer_init(&piece, "ghost piece");
-    buffer_reserve(dev, &g->pick, ((size_t)p->n_owned + 1) * sizeof(cl_int));
+    buffer_init(&piece, g->index.dev, "ghost piece");
+    buffer_reserve(&g->pick, ((size_t)p->n_owned + 1) * sizeof(cl_int));
     for (int r = 0; r < comm->n_rank; r++) {
         count_to[r] = 0;
         if (r == comm->rank || !may_meet(g, &all[comm->rank], &all[r])) continue;
-        count_to[r] = select_for(dev, g, scan, p, r, &all[r], &piece);
+        count_to[r] = select_for(g, scan, p, r, &all[r], &piece);
         index = fail_realloc(index, (size_t)(n_send + count_to[r]) * sizeof *index);
-        buffer_read(dev, &piece, 0, (size_t)count_to[r] * sizeof *index, index + n_send);
+        buffer_read(&piece, 0, (size_t)count_to[r] * sizeof *index, index + n_send);
         n_send += count_to[r];
     }
-    buffer_reserve(dev, &g->index, (size_t)n_send * sizeof(cl_int));
-    buffer_write(dev, &g->index, 0, (size_t)n_send * sizeof(cl_int), index);
-    buffer_free(dev, &piece);
+    buffer_reserve(&g->index, (size_t)n_send * sizeof(cl_int));
+    buffer_write(&g->index, 0, (size_t)n_send * sizeof(cl_int), index);
+    buffer_free(&piece);
     free(index);
 }
 
-void ghosts_refresh(struct device *dev, struct ghosts *g, struct particles *p)
+void ghosts_refresh(struct ghosts *g, struct particles *p)
 {
-    exchange_rows(dev, g, p, &p->field[FIELD_STATE].now, p->field[FIELD_STATE].bytes);
+    exchange_rows(g, p, &p->field[FIELD_STATE].now, p->field[FIELD_STATE].bytes);
 }
 
-void ghosts_plan(struct device *dev, struct ghosts *g, const struct owners *owners,
-    struct scan *scan, struct particles *p, const struct cells_bounds *own)
+void ghosts_plan(struct ghosts *g, const struct owners *owners, struct scan *scan,
+    struct particles *p, const struct cells_bounds *own)
 {
     const struct comm *comm = g->comm;
     p->n_ghost = 0;
@@ -159,27 +159,27 @@ void ghosts_plan(struct device *dev, struct ghosts *g, const struct owners *owne
     launch_bind_buffer(g->select, "node", &owners->node);
     launch_bind_buffer(g->select, "cut", &owners->cut);
     launch_bind_buffer(g->select, "domain", &owners->domain);
-    choose(dev, g, scan, p, all, count_to);
+    choose(g, scan, p, all, count_to);
     exchange_plan(&g->exchange, comm, count_to);
     p->n_ghost = g->exchange.n_recv;
-    particles_reserve(dev, p, g->features, p->n_owned + p->n_ghost, p->n_owned);
-    exchange_rows(dev, g, p, &p->field[FIELD_GID].now, p->field[FIELD_GID].bytes);
-    exchange_rows(dev, g, p, &p->reach, particles_preal(g->features));
-    ghosts_refresh(dev, g, p); /* g->gather goes on with these */
-    exchange_bind(dev, &g->exchange, p->field[FIELD_STATE].bytes, false);
+    particles_reserve(p, g->features, p->n_owned + p->n_ghost, p->n_owned);
+    exchange_rows(g, p, &p->field[FIELD_GID].now, p->field[FIELD_GID].bytes);
+    exchange_rows(g, p, &p->reach, particles_preal(g->features));
+    ghosts_refresh(g, p); /* g->gather goes on with these */
+    exchange_bind(&g->exchange, p->field[FIELD_STATE].bytes, false);
     free(count_to);
     free(all);
 }
 
-void ghosts_begin(struct device *dev, struct ghosts *g, struct timers *timers)
+void ghosts_begin(struct ghosts *g, struct timers *timers)
 {
-    if (g->comm->n_rank > 1) exchange_begin(dev, &g->exchange, g->gather, timers);
+    if (g->comm->n_rank > 1) exchange_begin(&g->exchange, g->gather, timers);
 }
 
-const cl_event *ghosts_swap(struct device *dev, struct ghosts *g, struct particles *p,
-    cl_event *most, struct timers *timers)
+const cl_event *ghosts_swap(
+    struct ghosts *g, struct particles *p, cl_event *most, struct timers *timers)
 {
     if (g->comm->n_rank == 1) return NULL;
-    return exchange_swap(dev, &g->exchange, &p->field[FIELD_STATE].now,
+    return exchange_swap(&g->exchange, &p->field[FIELD_STATE].now,
         (size_t)p->n_owned * g->exchange.record, most, timers);
 }

@@ -22,22 +22,22 @@ struct ghosts {
 
 struct ghosts *ghosts_create(struct device *dev, const struct comm *comm,
     const struct features *features, const struct program *lists, const double period[3]);
-void ghosts_free(struct device *dev, struct ghosts *g);
+void ghosts_free(struct ghosts *g);
 
 /* New plan and all that is static of new ghosts (state, gid, reach) behind the owned elements,
  * which are where owners_move has brought them. `own`: bounds of owned elements. Collective. */
-void ghosts_plan(struct device *dev, struct ghosts *g, const struct owners *owners,
-    struct scan *scan, struct particles *p, const struct cells_bounds *own);
+void ghosts_plan(struct ghosts *g, const struct owners *owners, struct scan *scan,
+    struct particles *p, const struct cells_bounds *own);
 
 /* All states anew, outside of a step: blocking, collective. */
-void ghosts_refresh(struct device *dev, struct ghosts *g, struct particles *p);
+void ghosts_refresh(struct ghosts *g, struct particles *p);
 
 /* Enqueues packing of what others need and its read-back, posts receives. */
-void ghosts_begin(struct device *dev, struct ghosts *g, struct timers *timers);
+void ghosts_begin(struct ghosts *g, struct timers *timers);
 /* Sends, waits for arrivals, enqueues their copy to the device. `most`: see exchange_swap. Returns
  * the event that kernels on ghosts have to wait for (borrowed), NULL if there is nothing to wait
  * for. */
-const cl_event *ghosts_swap(struct device *dev, struct ghosts *g, struct particles *p,
-    cl_event *most, struct timers *timers);
+const cl_event *ghosts_swap(
+    struct ghosts *g, struct particles *p, cl_event *most, struct timers *timers);
 
 #endif

@@ -25,8 +25,8 @@ static void write_table(struct sim *s, struct limit *limit)
     double *row = fail_alloc(n_value * sizeof *row);
     for (int k = 0; k < n * n; k++)
         limit_material(s->scene, k / n, k % n, row + k * CONTACT_TABLE_MATERIAL);
-    buffer_reserve(s->dev, &limit->table, n_value * particles_real(&run->features));
-    particles_write(s->dev, &limit->table, run->features.real_is_float, 0, n_value, row);
+    buffer_reserve(&limit->table, n_value * particles_real(&run->features));
+    reals_write(&limit->table, run->features.real_is_float, 0, n_value, row);
     free(row);
 }
 
@@ -53,11 +53,11 @@ struct limit *limit_create(struct sim *s)
     limit->program = program_build(s->dev, s->comm, "limit", options, sources);
     free(options);
     limit->launch = launch_create(limit->program, "step_limit");
-    buffer_init(&limit->table, "materials of the limit");
-    buffer_init(&limit->partial, "limit");
-    buffer_init(&limit->partial_gid, "limit, elements");
-    buffer_reserve(s->dev, &limit->partial, GROUPS_MOST * particles_real(&run->features));
-    buffer_reserve(s->dev, &limit->partial_gid, GROUPS_MOST * sizeof(int64_t));
+    buffer_init(&limit->table, s->dev, "materials of the limit");
+    buffer_init(&limit->partial, s->dev, "limit");
+    buffer_init(&limit->partial_gid, s->dev, "limit, elements");
+    buffer_reserve(&limit->partial, GROUPS_MOST * particles_real(&run->features));
+    buffer_reserve(&limit->partial_gid, GROUPS_MOST * sizeof(int64_t));
     write_table(s, limit);
     launch_set_int(limit->launch, "n_material", s->scene->n_material);
     launch_set_int(limit->launch, "kind", run->first->n > 0 ? run->first->material[0] : 0);
@@ -66,12 +66,12 @@ struct limit *limit_create(struct sim *s)
     return limit;
 }
 
-void limit_free(struct device *dev, struct limit *limit)
+void limit_free(struct limit *limit)
 {
     if (!limit) return;
-    buffer_free(dev, &limit->table);
-    buffer_free(dev, &limit->partial);
-    buffer_free(dev, &limit->partial_gid);
+    buffer_free(&limit->table);
+    buffer_free(&limit->partial);
+    buffer_free(&limit->partial_gid);
     launch_free(limit->launch);
     program_free(limit->program);
     free(limit);
@@ -111,10 +111,9 @@ static struct limit_result smallest(struct sim *s, struct limit *limit)
         wanted = (run->particles->n_owned + GROUP * PER_ITEM - 1) / (GROUP * PER_ITEM);
     int n_group = wanted < GROUPS_MOST ? (int)wanted : GROUPS_MOST;
     launch_set_int(limit->launch, "n_group", n_group);
-    launch_run(limit->launch, s->dev->compute, n_group * GROUP, 0, NULL, NULL);
-    double *dt =
-        particles_read(s->dev, &limit->partial, run->features.real_is_float, 0, (size_t)n_group);
-    buffer_read(s->dev, &limit->partial_gid, 0, (size_t)n_group * sizeof *gid, gid);
+    launch_run(limit->launch, n_group * GROUP);
+    double *dt = reals_read(&limit->partial, run->features.real_is_float, 0, (size_t)n_group);
+    buffer_read(&limit->partial_gid, 0, (size_t)n_group * sizeof *gid, gid);
     for (int g = 0; g < n_group; g++) {
         if (gid[g] < 0 || dt[g] > best.dt || (!(dt[g] < best.dt) && gid[g] > best.gid)) continue;
         best.dt = dt[g];
@@ -130,9 +129,9 @@ struct limit_result limit_run(struct sim *s, double dt, double share)
     struct limit *limit = run->limit;
     struct limit_result best = {HUGE_VAL, -1};
     if (run->wall_contacts) {
-        wall_contacts_set_step(s->dev, run->wall_contacts, s->step);
+        wall_contacts_set_step(run->wall_contacts, s->step);
         if (run->features.triangle && run->wall_contacts->now.n > 0)
-            wall_contacts_select(s->dev, run->wall_contacts, run->particles);
+            wall_contacts_select(run->wall_contacts, run->particles);
     }
     if (run->particles->n_owned > 0) {
         bind(s, limit);

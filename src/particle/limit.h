@@ -20,7 +20,7 @@ struct limit_result {
 /* Kernel and buffers; `s` has its elements, lists and walls. limit_free: NULL is fine.
  * Collective. */
 struct limit *limit_create(struct sim *s);
-void limit_free(struct device *dev, struct limit *limit);
+void limit_free(struct limit *limit);
 
 /* The bound of the contacts of now with dashpots centred as for the step dt [s], share s of
  * law_limit.h. A step up to the result is safe if it is not below dt. The same on any number of

@@ -19,10 +19,10 @@ struct owners *owners_create(struct device *dev, const struct comm *comm,
     o->comm = comm;
     o->features = features;
     for (int i = 0; i < 9; i++) {
-        buffer_init(all[i], name[i]);
-        buffer_reserve(dev, all[i], 64);
+        buffer_init(all[i], dev, name[i]);
+        buffer_reserve(all[i], 64);
     }
-    particles_write(dev, &o->domain, features->position_is_float, 0, 6, domain);
+    reals_write(&o->domain, features->position_is_float, 0, 6, domain);
     o->select = launch_create(lists, "select_owner");
     o->compact = launch_create(lists, "record_select");
     o->number = launch_create(lists, "record_number");
@@ -35,19 +35,19 @@ struct owners *owners_create(struct device *dev, const struct comm *comm,
     return o;
 }
 
-void owners_free(struct device *dev, struct owners *o)
+void owners_free(struct owners *o)
 {
     if (!o) return;
     struct buffer *all[] = {&o->node, &o->cut, &o->domain, &o->owner, &o->stay, &o->leave,
         &o->index, &o->old_index, &o->picked};
-    for (int i = 0; i < 9; i++) buffer_free(dev, all[i]);
+    for (int i = 0; i < 9; i++) buffer_free(all[i]);
     struct launch *launch[] = {o->select, o->compact, o->number, o->gather};
     for (int i = 0; i < 4; i++) launch_free(launch[i]);
     free(o->removed);
     free(o);
 }
 
-void owners_set_tree(struct device *dev, struct owners *o, const struct rcb *rcb)
+void owners_set_tree(struct owners *o, const struct rcb *rcb)
 {
     size_t n = (size_t)rcb->n_node;
     cl_int *node = fail_alloc(3 * n * sizeof *node);
@@ -57,21 +57,20 @@ void owners_set_tree(struct device *dev, struct owners *o, const struct rcb *rcb
         node[3 * k + 2] = rcb->right[k];
     }
     o->n_node = rcb->n_node;
-    buffer_reserve(dev, &o->node, 3 * n * sizeof *node);
-    buffer_reserve(dev, &o->cut, n * particles_preal(o->features));
-    buffer_write(dev, &o->node, 0, 3 * n * sizeof *node, node);
-    particles_write(dev, &o->cut, o->features->position_is_float, 0, n, rcb->cut);
+    buffer_reserve(&o->node, 3 * n * sizeof *node);
+    buffer_reserve(&o->cut, n * particles_preal(o->features));
+    buffer_write(&o->node, 0, 3 * n * sizeof *node, node);
+    reals_write(&o->cut, o->features->position_is_float, 0, n, rcb->cut);
     free(node);
 }
 
 /* Owner of each element; stay flags; returns how many leave this rank. */
-static int64_t find_leaving(
-    struct device *dev, struct owners *o, struct scan *scan, struct particles *p)
+static int64_t find_leaving(struct owners *o, struct scan *scan, struct particles *p)
 {
     size_t n = (size_t)p->n_owned;
-    buffer_reserve(dev, &o->owner, n * sizeof(cl_int));
-    buffer_reserve(dev, &o->stay, n * sizeof(cl_int));
-    buffer_reserve(dev, &o->leave, (n + 1) * sizeof(cl_int));
+    buffer_reserve(&o->owner, n * sizeof(cl_int));
+    buffer_reserve(&o->stay, n * sizeof(cl_int));
+    buffer_reserve(&o->leave, (n + 1) * sizeof(cl_int));
     launch_set_int(o->select, "n", (int)n);
     launch_set_int(o->select, "n_node", o->n_node);
     launch_bind_buffer(o->select, "position", &p->field[FIELD_STATE].now);
@@ -81,31 +80,24 @@ static int64_t find_leaving(
     launch_bind_buffer(o->select, "owner", &o->owner);
     launch_bind_buffer(o->select, "stay", &o->stay);
     launch_bind_buffer(o->select, "leave", &o->leave);
-    launch_run(o->select, dev->compute, p->n_owned, 0, NULL, NULL);
-    return scan_total(dev, scan, &o->leave, p->n_owned);
+    launch_run(o->select, p->n_owned);
+    return scan_total(scan, &o->leave, p->n_owned);
 }
 
 /* Rows of a device array picked by o->index, on the host. */
-static void *pick(
-    struct device *dev, struct owners *o, const struct buffer *from, size_t bytes, int64_t n)
+static void *pick(struct owners *o, const struct buffer *from, size_t bytes, int64_t n)
 {
     void *rows = fail_alloc((size_t)n * bytes);
     if (bytes == 0) return rows;
-    buffer_reserve(dev, &o->picked, (size_t)n * bytes);
+    buffer_reserve(&o->picked, (size_t)n * bytes);
     launch_set_int(o->gather, "n", (int)n);
     launch_set_int(o->gather, "words", (int)(bytes / 4));
     launch_bind_buffer(o->gather, "index", &o->index);
     launch_bind_buffer(o->gather, "from", from);
     launch_bind_buffer(o->gather, "to", &o->picked);
-    launch_run(o->gather, dev->compute, n, 0, NULL, NULL);
-    buffer_read(dev, &o->picked, 0, (size_t)n * bytes, rows);
+    launch_run(o->gather, n);
+    buffer_read(&o->picked, 0, (size_t)n * bytes, rows);
     return rows;
-}
-
-static double number(const char *record, bool is_float, int k)
-{
-    return is_float ? (double)((const float *)(const void *)record)[k]
-                    : ((const double *)(const void *)record)[k];
 }
 
 static void remember_removed(
@@ -119,35 +111,35 @@ static void remember_removed(
         r->gid = ((const int64_t *)l->field[FIELD_GID])[i];
         const char *state = (const char *)l->field[FIELD_STATE] + (size_t)i * l->bytes[FIELD_STATE];
         const char *motion = state + 4 * particles_preal(o->features);
-        for (int a = 0; a < 3; a++) {
-            r->x[a] = number(state, o->features->position_is_float, a);
-            r->v[a] = number(motion, o->features->real_is_float, a);
-            r->w[a] = o->features->spin ? number(motion, o->features->real_is_float, 4 + a) : 0;
+        for (size_t a = 0; a < 3; a++) {
+            r->x[a] = reals_get(state, o->features->position_is_float, a);
+            r->v[a] = reals_get(motion, o->features->real_is_float, a);
+            r->w[a] = o->features->spin ? reals_get(motion, o->features->real_is_float, 4 + a) : 0;
         }
-        r->radius = number(state, o->features->position_is_float, 3);
-        r->inverse_m = number(motion, o->features->real_is_float, 3);
+        r->radius = reals_get(state, o->features->position_is_float, 3);
+        r->inverse_m = reals_get(motion, o->features->real_is_float, 3);
     }
 }
 
 /* Takes the leaving elements off this rank and brings in those of others. */
-static struct owners_arriving exchange(struct device *dev, struct owners *o, struct scan *scan,
-    struct particles *p, struct pairs *pairs, struct wall_contacts *walls, int64_t n_leave)
+static struct owners_arriving exchange(struct owners *o, struct scan *scan, struct particles *p,
+    struct pairs *pairs, struct wall_contacts *walls, int64_t n_leave)
 {
     struct owners_leaving l = {.n = n_leave};
-    buffer_reserve(dev, &o->index, (size_t)n_leave * sizeof(cl_int));
+    buffer_reserve(&o->index, (size_t)n_leave * sizeof(cl_int));
     launch_set_int(o->compact, "n", (int)p->n_owned);
     launch_bind_buffer(o->compact, "at", &o->leave);
     launch_bind_buffer(o->compact, "index", &o->index);
-    launch_run(o->compact, dev->compute, p->n_owned, 0, NULL, NULL);
-    int *owner = pick(dev, o, &o->owner, sizeof *owner, n_leave);
+    launch_run(o->compact, p->n_owned);
+    int *owner = pick(o, &o->owner, sizeof *owner, n_leave);
     for (int i = 0; i < FIELD_N; i++) {
         l.bytes[i] = p->field[i].bytes;
-        l.field[i] = pick(dev, o, &p->field[i].now, l.bytes[i], n_leave);
+        l.field[i] = pick(o, &p->field[i].now, l.bytes[i], n_leave);
     }
     owners_pick_contacts(
-        dev, &l.pair, scan, &o->index, n_leave, pairs, NULL, particles_real(o->features));
+        &l.pair, scan, &o->index, n_leave, pairs, NULL, particles_real(o->features));
     owners_pick_contacts(
-        dev, &l.wall, scan, &o->index, n_leave, NULL, walls, particles_real(o->features));
+        &l.wall, scan, &o->index, n_leave, NULL, walls, particles_real(o->features));
     remember_removed(o, &l, owner, n_leave);
     int64_t *bytes_to = fail_alloc((size_t)o->comm->n_rank * sizeof *bytes_to),
             *bytes_from = fail_alloc((size_t)o->comm->n_rank * sizeof *bytes_from);
@@ -166,47 +158,46 @@ static struct owners_arriving exchange(struct device *dev, struct owners *o, str
     return a;
 }
 
-void owners_move(struct device *dev, struct owners *o, struct cells *cells, struct scan *scan,
-    struct particles *p, struct pairs *pairs, struct wall_contacts *walls,
-    const struct cells_bounds *bounds)
+void owners_move(struct owners *o, struct cells *cells, struct scan *scan, struct particles *p,
+    struct pairs *pairs, struct wall_contacts *walls, const struct cells_bounds *bounds)
 {
-    int64_t n_leave = find_leaving(dev, o, scan, p), n_any = n_leave, n_old = p->n_owned;
+    int64_t n_leave = find_leaving(o, scan, p), n_any = n_leave, n_old = p->n_owned;
     struct owners_arriving a = {0};
     o->n_removed = o->n_moved = 0;
     comm_sum_i64(o->comm, &n_any, 1);
-    if (n_any > 0) a = exchange(dev, o, scan, p, pairs, walls, n_leave);
+    if (n_any > 0) a = exchange(o, scan, p, pairs, walls, n_leave);
     int64_t n_keep = n_old - n_leave, n_new = n_keep + a.n;
-    cells_order(dev, cells, scan, p, n_old, bounds, &o->stay);
-    particles_reserve_spare(dev, p, n_new);
-    particles_permute(dev, p, &cells->member, n_keep);
-    buffer_reserve(dev, &o->old_index, (size_t)n_new * sizeof(cl_int));
+    cells_order(cells, scan, p, n_old, bounds, &o->stay);
+    particles_reserve_spare(p, n_new);
+    particles_permute(p, &cells->member, n_keep);
+    buffer_reserve(&o->old_index, (size_t)n_new * sizeof(cl_int));
     if (n_keep > 0) {
         launch_bind_buffer(cells->copy, "from", &cells->member);
         launch_bind_buffer(cells->copy, "to", &o->old_index);
         launch_set_int(cells->copy, "n", (int)n_keep);
-        launch_run(cells->copy, dev->compute, n_keep, 0, NULL, NULL);
+        launch_run(cells->copy, n_keep);
         launch_bind_buffer(cells->copy, "from", &cells->begin);
         launch_bind_buffer(cells->copy, "to", &cells->cursor);
     }
     particles_swap(p);
     for (int i = 0; i < FIELD_N; i++)
-        buffer_write(dev, &p->field[i].now, (size_t)n_keep * p->field[i].bytes,
+        buffer_write(&p->field[i].now, (size_t)n_keep * p->field[i].bytes,
             (size_t)a.n * p->field[i].bytes, a.field[i]);
     if (a.n > 0) {
         cl_int *number = fail_alloc((size_t)a.n * sizeof *number);
         for (int64_t i = 0; i < a.n; i++) number[i] = (cl_int)(n_old + i);
-        buffer_write(dev, &o->old_index, (size_t)n_keep * sizeof *number,
-            (size_t)a.n * sizeof *number, number);
+        buffer_write(
+            &o->old_index, (size_t)n_keep * sizeof *number, (size_t)a.n * sizeof *number, number);
         free(number);
     }
     if (pairs)
-        owners_store_contacts(dev, &pairs->arrivals, &a.pair, a.n, sizeof(int64_t),
+        owners_store_contacts(&pairs->arrivals, &a.pair, a.n, sizeof(int64_t),
             pairs->layout.history, particles_real(o->features));
     if (walls)
-        owners_store_contacts(dev, &walls->arrivals, &a.wall, a.n, sizeof(cl_int),
-            walls->layout.history, particles_real(o->features));
+        owners_store_contacts(&walls->arrivals, &a.wall, a.n, sizeof(cl_int), walls->layout.history,
+            particles_real(o->features));
     p->n_owned = n_new;
     p->n_ghost = 0;
-    particles_reserve(dev, p, o->features, n_new, n_new);
+    particles_reserve(p, o->features, n_new, n_new);
     owners_arriving_free(&a);
 }

@@ -39,13 +39,12 @@ struct owners {
 struct owners *owners_create(struct device *dev, const struct comm *comm,
     const struct features *features, const struct program *lists, const double period[3],
     const double domain[6]);
-void owners_free(struct device *dev, struct owners *o);
-void owners_set_tree(struct device *dev, struct owners *o, const struct rcb *rcb);
+void owners_free(struct owners *o);
+void owners_set_tree(struct owners *o, const struct rcb *rcb);
 
 /* Brings every element to its owner and into storage order; o->old_index is then ready for
  * pairs_carry and wall_contacts_carry. Collective. */
-void owners_move(struct device *dev, struct owners *o, struct cells *cells, struct scan *scan,
-    struct particles *p, struct pairs *pairs, struct wall_contacts *walls,
-    const struct cells_bounds *bounds);
+void owners_move(struct owners *o, struct cells *cells, struct scan *scan, struct particles *p,
+    struct pairs *pairs, struct wall_contacts *walls, const struct cells_bounds *bounds);
 
 #endif

@@ -38,9 +38,8 @@ static void bind_leave(
     }
 }
 
-void owners_pick_contacts(struct device *dev, struct owners_contacts *c, struct scan *scan,
-    const struct buffer *index, int64_t n, struct pairs *pairs, struct wall_contacts *walls,
-    size_t real)
+void owners_pick_contacts(struct owners_contacts *c, struct scan *scan, const struct buffer *index,
+    int64_t n, struct pairs *pairs, struct wall_contacts *walls, size_t real)
 {
     const struct contact_layout *layout = pairs ? &pairs->layout : walls ? &walls->layout : NULL;
     size_t key_bytes = pairs ? sizeof(int64_t) : sizeof(cl_int);
@@ -52,8 +51,8 @@ void owners_pick_contacts(struct device *dev, struct owners_contacts *c, struct 
     }
     struct launch *k = pairs ? pairs->leave : walls->leave;
     struct contact_arrivals out;
-    contact_arrivals_init(dev, &out, "leaving contacts");
-    buffer_reserve(dev, &out.begin, ((size_t)n + 1) * sizeof(cl_int));
+    contact_arrivals_init(index->dev, &out, "leaving contacts");
+    buffer_reserve(&out.begin, ((size_t)n + 1) * sizeof(cl_int));
     bind_leave(k, pairs, walls);
     launch_set_int(k, "n", (int)n);
     launch_set_int(k, "fill", 0);
@@ -64,28 +63,28 @@ void owners_pick_contacts(struct device *dev, struct owners_contacts *c, struct 
     launch_bind_buffer(k, pairs ? "leave_gid" : "leave_candidate", &out.key);
     launch_bind_buffer(k, "leave_state", &out.state);
     launch_bind_buffer(k, "leave_history", &out.history);
-    launch_run(k, dev->compute, n, 0, NULL, NULL);
-    size_t total = (size_t)scan_total(dev, scan, &out.begin, n);
+    launch_run(k, n);
+    size_t total = (size_t)scan_total(scan, &out.begin, n);
     c->history_bytes = (size_t)layout->history * real;
-    buffer_reserve(dev, &out.key, total * key_bytes);
-    buffer_reserve(dev, &out.state, total * sizeof(cl_int));
-    buffer_reserve(dev, &out.history, total * c->history_bytes);
+    buffer_reserve(&out.key, total * key_bytes);
+    buffer_reserve(&out.state, total * sizeof(cl_int));
+    buffer_reserve(&out.history, total * c->history_bytes);
     launch_set_int(k, "fill", 1);
     launch_set_int(k, "leave_capacity", (int)total);
-    launch_run(k, dev->compute, n, 0, NULL, NULL);
+    launch_run(k, n);
     char *key = fail_alloc(total * key_bytes), *plane = fail_alloc(total * c->history_bytes);
     c->key = fail_alloc(total * sizeof *c->key);
     c->state = fail_alloc(total * sizeof *c->state);
-    buffer_read(dev, &out.begin, 0, ((size_t)n + 1) * sizeof(cl_int), c->begin);
-    buffer_read(dev, &out.key, 0, total * key_bytes, key);
-    buffer_read(dev, &out.state, 0, total * sizeof(cl_int), c->state);
-    buffer_read(dev, &out.history, 0, total * c->history_bytes, plane);
+    buffer_read(&out.begin, 0, ((size_t)n + 1) * sizeof(cl_int), c->begin);
+    buffer_read(&out.key, 0, total * key_bytes, key);
+    buffer_read(&out.state, 0, total * sizeof(cl_int), c->state);
+    buffer_read(&out.history, 0, total * c->history_bytes, plane);
     for (size_t i = 0; i < total; i++)
         c->key[i] = pairs ? ((int64_t *)(void *)key)[i] : ((cl_int *)(void *)key)[i];
     c->history = rows_of_planes(plane, layout->history, (int64_t)total, (int64_t)total, real);
     free(key);
     free(plane);
-    contact_arrivals_free(dev, &out);
+    contact_arrivals_free(&out);
 }
 
 static size_t contact_bytes(const struct owners_contacts *c)
@@ -202,8 +201,8 @@ struct owners_arriving owners_unpack(
     return a;
 }
 
-void owners_store_contacts(struct device *dev, struct contact_arrivals *a,
-    const struct owners_contacts *c, int64_t n, size_t key_bytes, int width, size_t real)
+void owners_store_contacts(struct contact_arrivals *a, const struct owners_contacts *c, int64_t n,
+    size_t key_bytes, int width, size_t real)
 {
     size_t total = n > 0 ? (size_t)c->begin[n] : 0;
     a->n = n;
@@ -217,15 +216,15 @@ void owners_store_contacts(struct device *dev, struct contact_arrivals *a,
             memcpy(plane + ((size_t)w * total + k) * real,
                 c->history + k * c->history_bytes + (size_t)w * real, real);
     }
-    buffer_reserve(dev, &a->begin, ((size_t)n + 1) * sizeof(cl_int));
-    buffer_reserve(dev, &a->key, total * key_bytes);
-    buffer_reserve(dev, &a->state, total * sizeof(cl_int));
-    buffer_reserve(dev, &a->history, total * c->history_bytes);
-    buffer_write(dev, &a->begin, 0, ((size_t)n + 1) * sizeof(cl_int), c->begin);
-    buffer_write(dev, &a->key, 0, total * key_bytes,
-        key_bytes == sizeof *c->key ? (const void *)c->key : small);
-    buffer_write(dev, &a->state, 0, total * sizeof(cl_int), c->state);
-    buffer_write(dev, &a->history, 0, total * c->history_bytes, plane);
+    buffer_reserve(&a->begin, ((size_t)n + 1) * sizeof(cl_int));
+    buffer_reserve(&a->key, total * key_bytes);
+    buffer_reserve(&a->state, total * sizeof(cl_int));
+    buffer_reserve(&a->history, total * c->history_bytes);
+    buffer_write(&a->begin, 0, ((size_t)n + 1) * sizeof(cl_int), c->begin);
+    buffer_write(
+        &a->key, 0, total * key_bytes, key_bytes == sizeof *c->key ? (const void *)c->key : small);
+    buffer_write(&a->state, 0, total * sizeof(cl_int), c->state);
+    buffer_write(&a->history, 0, total * c->history_bytes, plane);
     free(plane);
     free(small);
 }

@@ -32,9 +32,8 @@ struct owners_arriving {
 
 /* Contacts with a memory of the n elements in `index` (device), from pairs or from walls (one of
  * them NULL). */
-void owners_pick_contacts(struct device *dev, struct owners_contacts *c, struct scan *scan,
-    const struct buffer *index, int64_t n, struct pairs *pairs, struct wall_contacts *walls,
-    size_t real);
+void owners_pick_contacts(struct owners_contacts *c, struct scan *scan, const struct buffer *index,
+    int64_t n, struct pairs *pairs, struct wall_contacts *walls, size_t real);
 
 /* Messages in ascending order of destination owner[i]; a negative owner goes nowhere. bytes_to
  * [n_rank] is filled. */
@@ -44,8 +43,8 @@ struct owners_arriving owners_unpack(
     const struct owners_leaving *like, const void *data, int64_t bytes);
 
 /* To the device, for the carriers. key_bytes: 8 for gids, 4 for primitives. */
-void owners_store_contacts(struct device *dev, struct contact_arrivals *a,
-    const struct owners_contacts *c, int64_t n, size_t key_bytes, int width, size_t real);
+void owners_store_contacts(struct contact_arrivals *a, const struct owners_contacts *c, int64_t n,
+    size_t key_bytes, int width, size_t real);
 
 void owners_leaving_free(struct owners_leaving *l);
 void owners_arriving_free(struct owners_arriving *a);

@@ -23,8 +23,8 @@ static void list_init(struct device *dev, struct pair_list *l)
     struct buffer *all[LIST_BUFFERS];
     list_buffers(l, all);
     for (int i = 0; i < LIST_BUFFERS; i++) {
-        buffer_init(all[i], name[i]);
-        buffer_reserve(dev, all[i], 64);
+        buffer_init(all[i], dev, name[i]);
+        buffer_reserve(all[i], 64);
     }
 }
 
@@ -42,8 +42,8 @@ struct pairs *pairs_create(struct device *dev, const struct features *features,
     static const char *const name[] = {
         "interior pairs", "boundary pairs", "pair results", "pair ledger", "neighbours found"};
     for (int i = 0; i < 5; i++) {
-        buffer_init(own[i], name[i]);
-        buffer_reserve(dev, own[i], 64);
+        buffer_init(own[i], dev, name[i]);
+        buffer_reserve(own[i], 64);
     }
     pairs->rows = launch_create(lists, "rows");
     pairs->count = launch_create(lists, "pair_count");
@@ -54,31 +54,31 @@ struct pairs *pairs_create(struct device *dev, const struct features *features,
     return pairs;
 }
 
-void pairs_free(struct device *dev, struct pairs *pairs)
+void pairs_free(struct pairs *pairs)
 {
     if (!pairs) return;
     struct buffer *all[LIST_BUFFERS];
     struct pair_list *list[] = {&pairs->now, &pairs->old};
     for (int k = 0; k < 2; k++) {
         list_buffers(list[k], all);
-        for (int i = 0; i < LIST_BUFFERS; i++) buffer_free(dev, all[i]);
+        for (int i = 0; i < LIST_BUFFERS; i++) buffer_free(all[i]);
     }
-    contact_arrivals_free(dev, &pairs->arrivals);
+    contact_arrivals_free(&pairs->arrivals);
     struct buffer *own[] = {
         &pairs->interior, &pairs->boundary, &pairs->result, &pairs->ledger, &pairs->found};
-    for (int i = 0; i < 5; i++) buffer_free(dev, own[i]);
+    for (int i = 0; i < 5; i++) buffer_free(own[i]);
     struct launch *launch[] = {
         pairs->rows, pairs->count, pairs->fill, pairs->link, pairs->carry, pairs->leave};
     for (int i = 0; i < 6; i++) launch_free(launch[i]);
     free(pairs);
 }
 
-static void build_rows(struct device *dev, struct pairs *pairs, struct cells *cells,
-    struct scan *scan, const struct particles *p)
+static void build_rows(
+    struct pairs *pairs, struct cells *cells, struct scan *scan, const struct particles *p)
 {
     struct pair_list *l = &pairs->now;
     struct launch *rows = pairs->rows;
-    buffer_reserve(dev, &l->row_begin, ((size_t)l->n_all + 1) * sizeof(cl_int));
+    buffer_reserve(&l->row_begin, ((size_t)l->n_all + 1) * sizeof(cl_int));
     launch_set_int(rows, "n_owned", (int)l->n_owned);
     launch_set_int(rows, "n_all", (int)l->n_all);
     launch_set_int(rows, "n_level", cells->n_level);
@@ -92,29 +92,28 @@ static void build_rows(struct device *dev, struct pairs *pairs, struct cells *ce
     launch_set_real_if(rows, "period_x", cells->period[0]);
     launch_set_real_if(rows, "period_y", cells->period[1]);
     launch_set_real_if(rows, "period_z", cells->period[2]);
-    buffer_reserve(dev, &pairs->found, (size_t)l->n_all * ROW_FOUND * sizeof(cl_int));
+    buffer_reserve(&pairs->found, (size_t)l->n_all * ROW_FOUND * sizeof(cl_int));
     launch_bind_buffer(rows, "found", &pairs->found);
     launch_bind_buffer(rows, "begin", &l->row_begin);
     launch_bind_buffer(rows, "row", &l->row);
     launch_bind_buffer(rows, "row_gid", &l->row_gid);
     for (int fill = 0; fill < 2; fill++) {
         launch_set_int(rows, "fill", fill);
-        launch_run(rows, dev->compute, l->n_all, 0, NULL, NULL);
+        launch_run(rows, l->n_all);
         if (fill) break;
-        l->n_row = scan_total(dev, scan, &l->row_begin, l->n_all);
-        buffer_reserve(dev, &l->row, (size_t)l->n_row * sizeof(cl_int));
-        buffer_reserve(dev, &l->row_gid, (size_t)l->n_row * sizeof(cl_long));
+        l->n_row = scan_total(scan, &l->row_begin, l->n_all);
+        buffer_reserve(&l->row, (size_t)l->n_row * sizeof(cl_int));
+        buffer_reserve(&l->row_gid, (size_t)l->n_row * sizeof(cl_long));
     }
 }
 
-static void count_pairs(
-    struct device *dev, struct pairs *pairs, struct scan *scan, const struct particles *p)
+static void count_pairs(struct pairs *pairs, struct scan *scan, const struct particles *p)
 {
     struct pair_list *l = &pairs->now;
     size_t per_element = ((size_t)l->n_all + 1) * sizeof(cl_int);
     struct buffer *counted[] = {&l->split, &l->up_begin, &pairs->interior, &pairs->boundary};
-    for (int i = 0; i < 4; i++) buffer_reserve(dev, counted[i], per_element);
-    buffer_reserve(dev, &l->incidence_begin, ((size_t)l->n_owned + 1) * sizeof(cl_int));
+    for (int i = 0; i < 4; i++) buffer_reserve(counted[i], per_element);
+    buffer_reserve(&l->incidence_begin, ((size_t)l->n_owned + 1) * sizeof(cl_int));
     launch_set_int(pairs->count, "n_owned", (int)l->n_owned);
     launch_set_int(pairs->count, "n_all", (int)l->n_all);
     launch_bind_buffer(pairs->count, "gid", &p->field[FIELD_GID].now);
@@ -125,14 +124,14 @@ static void count_pairs(
     launch_bind_buffer(pairs->count, "interior", &pairs->interior);
     launch_bind_buffer(pairs->count, "boundary", &pairs->boundary);
     launch_bind_buffer(pairs->count, "incidence", &l->incidence_begin);
-    launch_run(pairs->count, dev->compute, l->n_all, 0, NULL, NULL);
-    l->n_interior = scan_total(dev, scan, &pairs->interior, l->n_all);
-    l->n_boundary = l->n_mine = scan_total(dev, scan, &pairs->boundary, l->n_all);
+    launch_run(pairs->count, l->n_all);
+    l->n_interior = scan_total(scan, &pairs->interior, l->n_all);
+    l->n_boundary = l->n_mine = scan_total(scan, &pairs->boundary, l->n_all);
     l->n_lower = l->n_owned;
     cl_int own; /* rows of owned elements come first */
-    buffer_read(dev, &pairs->boundary, (size_t)l->n_owned * sizeof own, sizeof own, &own);
+    buffer_read(&pairs->boundary, (size_t)l->n_owned * sizeof own, sizeof own, &own);
     l->n_own = l->n_interior + own;
-    l->n_incidence = scan_total(dev, scan, &l->incidence_begin, l->n_owned);
+    l->n_incidence = scan_total(scan, &l->incidence_begin, l->n_owned);
     l->first_boundary = (l->n_interior + PAIR_ALIGN - 1) / PAIR_ALIGN * PAIR_ALIGN;
     int64_t n = l->first_boundary + l->n_boundary;
     if (n > INT32_MAX / 2 - 4 * PAIR_ALIGN || l->n_row > INT32_MAX / 2)
@@ -145,23 +144,23 @@ static void count_pairs(
 
 /* Room for a record per pair; the last one stays zero, for the blank pair of
  * kernels/particle/incidence.h. */
-static void reserve_results(struct device *dev, struct pairs *pairs, size_t real)
+static void reserve_results(struct pairs *pairs, size_t real)
 {
     size_t capacity = (size_t)pairs->now.capacity, bytes = (size_t)pairs->layout.result * real;
     char *zero = fail_alloc(bytes);
-    buffer_reserve(dev, &pairs->result, capacity * bytes);
-    buffer_write(dev, &pairs->result, (capacity - 1) * bytes, bytes, zero);
+    buffer_reserve(&pairs->result, capacity * bytes);
+    buffer_write(&pairs->result, (capacity - 1) * bytes, bytes, zero);
     free(zero);
 }
 
-static void fill_pairs(struct device *dev, struct pairs *pairs, const struct particles *p)
+static void fill_pairs(struct pairs *pairs, const struct particles *p)
 {
     struct pair_list *l = &pairs->now;
     size_t real = particles_real(pairs->features), capacity = (size_t)l->capacity;
-    buffer_reserve(dev, &l->pair_i, capacity * sizeof(cl_int));
-    buffer_reserve(dev, &l->pair_j, capacity * sizeof(cl_int));
-    buffer_reserve(dev, &l->incidence, (size_t)l->n_incidence * sizeof(cl_int));
-    reserve_results(dev, pairs, real);
+    buffer_reserve(&l->pair_i, capacity * sizeof(cl_int));
+    buffer_reserve(&l->pair_j, capacity * sizeof(cl_int));
+    buffer_reserve(&l->incidence, (size_t)l->n_incidence * sizeof(cl_int));
+    reserve_results(pairs, real);
     launch_set_int(pairs->fill, "n_all", (int)l->n_all);
     launch_set_int(pairs->fill, "first_boundary", (int)l->first_boundary);
     launch_set_int(pairs->link, "n_owned", (int)l->n_owned);
@@ -181,35 +180,34 @@ static void fill_pairs(struct device *dev, struct pairs *pairs, const struct par
     launch_bind_buffer(pairs->fill, "boundary", &pairs->boundary);
     launch_bind_buffer(pairs->fill, "pair_i", &l->pair_i);
     launch_bind_buffer(pairs->fill, "pair_j", &l->pair_j);
-    launch_run(pairs->fill, dev->compute, l->n_all, 0, NULL, NULL);
-    launch_run(pairs->link, dev->compute, l->n_owned, 0, NULL, NULL);
+    launch_run(pairs->fill, l->n_all);
+    launch_run(pairs->link, l->n_owned);
     if (!pairs->layout.remembers) return;
-    buffer_reserve(dev, &l->state, capacity * sizeof(cl_int));
-    buffer_reserve(dev, &l->history, capacity * (size_t)pairs->layout.history * real);
-    buffer_zero(dev, &l->state);
-    buffer_zero(dev, &l->history);
+    buffer_reserve(&l->state, capacity * sizeof(cl_int));
+    buffer_reserve(&l->history, capacity * (size_t)pairs->layout.history * real);
+    buffer_zero(&l->state);
+    buffer_zero(&l->history);
 }
 
-void pairs_build(struct device *dev, struct pairs *pairs, struct cells *cells, struct scan *scan,
-    const struct particles *p)
+void pairs_build(
+    struct pairs *pairs, struct cells *cells, struct scan *scan, const struct particles *p)
 {
     struct pair_list older = pairs->old;
     pairs->old = pairs->now;
     pairs->now = older;
     pairs->now.n_owned = p->n_owned;
     pairs->now.n_all = p->n_owned + p->n_ghost;
-    build_rows(dev, pairs, cells, scan, p);
-    count_pairs(dev, pairs, scan, p);
-    fill_pairs(dev, pairs, p);
+    build_rows(pairs, cells, scan, p);
+    count_pairs(pairs, scan, p);
+    fill_pairs(pairs, p);
     if (pairs->features->energy) {
-        buffer_reserve(dev, &pairs->ledger,
-            (size_t)pairs->now.capacity * CONTACT_LEDGER_WIDTH * sizeof(cl_double));
-        buffer_zero(dev, &pairs->ledger);
+        buffer_reserve(
+            &pairs->ledger, (size_t)pairs->now.capacity * CONTACT_LEDGER_WIDTH * sizeof(cl_double));
+        buffer_zero(&pairs->ledger);
     }
 }
 
-void pairs_carry(struct device *dev, struct pairs *pairs, const struct particles *p,
-    const struct buffer *old_index)
+void pairs_carry(struct pairs *pairs, const struct particles *p, const struct buffer *old_index)
 {
     struct pair_list *l = &pairs->now, *o = &pairs->old;
     struct launch *k = pairs->carry;
@@ -235,5 +233,5 @@ void pairs_carry(struct device *dev, struct pairs *pairs, const struct particles
         {"history", &l->history}};
     for (size_t i = 0; i < sizeof bind / sizeof *bind; i++)
         launch_bind_buffer(k, bind[i].name, bind[i].buffer);
-    launch_run(k, dev->compute, l->first_boundary + l->n_boundary, 0, NULL, NULL);
+    launch_run(k, l->first_boundary + l->n_boundary);
 }

@@ -50,16 +50,15 @@ struct pairs {
 
 struct pairs *pairs_create(struct device *dev, const struct features *features,
     const struct program *lists, const struct program *force);
-void pairs_free(struct device *dev, struct pairs *pairs);
+void pairs_free(struct pairs *pairs);
 
 /* Builds pairs->now for owned elements and ghosts that are sorted into cells; what was `now`
  * becomes `old`. Histories are carried over by pairs_carry. */
-void pairs_build(struct device *dev, struct pairs *pairs, struct cells *cells, struct scan *scan,
-    const struct particles *p);
+void pairs_build(
+    struct pairs *pairs, struct cells *cells, struct scan *scan, const struct particles *p);
 
 /* old_index [n_owned + n_ghost]: old number of an owned element, or old n_owned + its place among
  * the arrivals. */
-void pairs_carry(struct device *dev, struct pairs *pairs, const struct particles *p,
-    const struct buffer *old_index);
+void pairs_carry(struct pairs *pairs, const struct particles *p, const struct buffer *old_index);
 
 #endif

@@ -36,9 +36,9 @@ static struct list pairs_of(struct sim *s)
     size_t n = (size_t)l.n, all = (size_t)p->n_all;
     cl_int *i = fail_alloc(n * sizeof *i), *j = fail_alloc(n * sizeof *j);
     int64_t *gid = fail_alloc(all * sizeof *gid);
-    buffer_read(s->dev, &p->pair_i, 0, n * sizeof *i, i);
-    buffer_read(s->dev, &p->pair_j, 0, n * sizeof *j, j);
-    buffer_read(s->dev, &run->particles->field[FIELD_GID].now, 0, all * sizeof *gid, gid);
+    buffer_read(&p->pair_i, 0, n * sizeof *i, i);
+    buffer_read(&p->pair_j, 0, n * sizeof *j, j);
+    buffer_read(&run->particles->field[FIELD_GID].now, 0, all * sizeof *gid, gid);
     for (size_t k = 0; k < n; k++) {
         bool gap = k >= (size_t)p->n_interior && k < (size_t)p->first_boundary;
         l.mine[k] = !gap && k < (size_t)(p->first_boundary + p->n_mine) && i[k] < p->n_lower;
@@ -65,10 +65,10 @@ static struct list walls_of(struct sim *s)
     if (!w) return l;
     cl_int *e = fail_alloc(n * sizeof *e), *k = fail_alloc(n * sizeof *k);
     int64_t *gid = fail_alloc((size_t)w->now.n_owned * sizeof *gid);
-    buffer_read(s->dev, &w->now.element, 0, n * sizeof *e, e);
-    buffer_read(s->dev, &w->now.candidate, 0, n * sizeof *k, k);
-    buffer_read(s->dev, &run->particles->field[FIELD_GID].now, 0,
-        (size_t)w->now.n_owned * sizeof *gid, gid);
+    buffer_read(&w->now.element, 0, n * sizeof *e, e);
+    buffer_read(&w->now.candidate, 0, n * sizeof *k, k);
+    buffer_read(
+        &run->particles->field[FIELD_GID].now, 0, (size_t)w->now.n_owned * sizeof *gid, gid);
     for (size_t c = 0; c < n; c++) {
         l.id[c] = gid[e[c]];
         l.other[c] = k[c];
@@ -120,12 +120,11 @@ static void read_rows(struct sim *s, const struct list *l, struct rows *r)
     size_t n = (size_t)l->n, planes = (size_t)l->capacity;
     if (!l->layout.remembers || n == 0) return;
     cl_int *state = fail_alloc(n * sizeof *state);
-    double *history = particles_read(
-        s->dev, l->history, run->features.real_is_float, 0, (size_t)l->layout.history * planes);
-    double *ledger = run->features.energy
-                         ? particles_read(s->dev, l->ledger, false, 0, LEDGER_WIDTH * planes)
-                         : NULL;
-    buffer_read(s->dev, l->state, 0, n * sizeof *state, state);
+    double *history =
+        reals_read(l->history, run->features.real_is_float, 0, (size_t)l->layout.history * planes);
+    double *ledger =
+        run->features.energy ? reals_read(l->ledger, false, 0, LEDGER_WIDTH * planes) : NULL;
+    buffer_read(l->state, 0, n * sizeof *state, state);
     for (int64_t k = 0; k < l->n; k++)
         if (l->mine[k]) take(r, l, k, state[k], history, ledger);
     free(state);
@@ -214,11 +213,9 @@ static int64_t fill(struct sim *s, const struct list *l, const struct frame_tabl
             l->capacity, k);
         n_found += l->mine[k];
     }
-    buffer_write(s->dev, l->state, 0, planes * sizeof *state, state);
-    particles_write(
-        s->dev, l->history, run->features.real_is_float, 0, (size_t)width * planes, history);
-    if (run->features.energy)
-        particles_write(s->dev, l->ledger, false, 0, LEDGER_WIDTH * planes, ledger);
+    buffer_write(l->state, 0, planes * sizeof *state, state);
+    reals_write(l->history, run->features.real_is_float, 0, (size_t)width * planes, history);
+    if (run->features.energy) reals_write(l->ledger, false, 0, LEDGER_WIDTH * planes, ledger);
     void *own[] = {key, state, history, ledger};
     for (int i = 0; i < 4; i++) free(own[i]);
     return n_found;

@@ -38,13 +38,12 @@ static void read_positions(struct sim *s, struct view *v)
     struct particle_run *run = s->particle;
     const struct field *state = &run->particles->field[FIELD_STATE];
     char *record = fail_alloc((size_t)v->n_all * state->bytes);
-    buffer_read(s->dev, &state->now, 0, (size_t)v->n_all * state->bytes, record);
+    buffer_read(&state->now, 0, (size_t)v->n_all * state->bytes, record);
     v->x = fail_alloc((size_t)v->n_all * sizeof *v->x);
     for (int64_t i = 0; i < v->n_all; i++) {
         const void *x = record + (size_t)i * state->bytes;
-        for (int a = 0; a < 3; a++)
-            v->x[i][a] = run->features.position_is_float ? (double)((const float *)x)[a]
-                                                         : ((const double *)x)[a];
+        for (size_t a = 0; a < 3; a++)
+            v->x[i][a] = reals_get(x, run->features.position_is_float, a);
     }
     free(record);
 }
@@ -57,11 +56,11 @@ static struct view view_create(struct sim *s)
     size_t n = (size_t)v.n;
     cl_int *wall = fail_alloc((n + 1) * sizeof *wall);
     v.begin = fail_alloc((n + 1) * sizeof *v.begin);
-    buffer_read(s->dev, &l->row_begin, 0, (n + 1) * sizeof *v.begin, v.begin);
+    buffer_read(&l->row_begin, 0, (n + 1) * sizeof *v.begin, v.begin);
     v.row = fail_alloc((size_t)v.begin[n] * sizeof *v.row);
-    buffer_read(s->dev, &l->row, 0, (size_t)v.begin[n] * sizeof *v.row, v.row);
+    buffer_read(&l->row, 0, (size_t)v.begin[n] * sizeof *v.row, v.row);
     if (run->wall_contacts)
-        buffer_read(s->dev, &run->wall_contacts->now.begin, 0, (n + 1) * sizeof *wall, wall);
+        buffer_read(&run->wall_contacts->now.begin, 0, (n + 1) * sizeof *wall, wall);
     v.weight = fail_alloc(n * sizeof *v.weight);
     for (size_t i = 0; i < n; i++)
         v.weight[i] = 2 + 2 * (wall[i + 1] - wall[i]) + v.begin[i + 1] - v.begin[i];
@@ -205,7 +204,7 @@ void particle_cut(struct sim *s)
     view_free(&v);
     rcb_free(run->rcb);
     run->rcb = tree;
-    owners_set_tree(s->dev, run->owners, tree);
+    owners_set_tree(run->owners, tree);
 }
 
 void particle_spread(struct sim *s, const double *x, int64_t n)
@@ -214,6 +213,6 @@ void particle_spread(struct sim *s, const double *x, int64_t n)
     int64_t *weight = fail_alloc((size_t)n * sizeof *weight);
     for (int64_t i = 0; i < n; i++) weight[i] = 1;
     run->rcb = rcb_create(s->comm, s->comm->n_rank, NULL, x, weight, n);
-    owners_set_tree(s->dev, run->owners, run->rcb);
+    owners_set_tree(run->owners, run->rcb);
     free(weight);
 }

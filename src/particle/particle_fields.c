@@ -58,10 +58,10 @@ static struct near near_read(struct sim *s)
     near.begin = fail_alloc((all + 1) * sizeof *near.begin);
     near.row = fail_alloc((size_t)l->n_row * sizeof *near.row);
     near.x = fail_alloc(all * sizeof *near.x);
-    if (run->assigned) ghosts_refresh(s->dev, run->ghosts, run->particles);
-    buffer_read(s->dev, &l->row_begin, 0, (all + 1) * sizeof *near.begin, near.begin);
-    buffer_read(s->dev, &l->row, 0, (size_t)l->n_row * sizeof *near.row, near.row);
-    buffer_read(s->dev, &run->particles->field[FIELD_STATE].now, 0, all * stride, state);
+    if (run->assigned) ghosts_refresh(run->ghosts, run->particles);
+    buffer_read(&l->row_begin, 0, (all + 1) * sizeof *near.begin, near.begin);
+    buffer_read(&l->row, 0, (size_t)l->n_row * sizeof *near.row, near.row);
+    buffer_read(&run->particles->field[FIELD_STATE].now, 0, all * stride, state);
     for (size_t i = 0; i < all; i++)
         for (int a = 0; a < 4; a++)
             near.x[i][a] = run->features.position_is_float
@@ -105,8 +105,8 @@ static void *make_coordination(struct sim *s)
     if (run->wall_contacts && run->wall_contacts->layout.remembers) {
         size_t m = (size_t)run->wall_contacts->now.n;
         cl_int *element = fail_alloc(m * sizeof *element), *bits = fail_alloc(m * sizeof *bits);
-        buffer_read(s->dev, &run->wall_contacts->now.element, 0, m * sizeof *element, element);
-        buffer_read(s->dev, &run->wall_contacts->now.state, 0, m * sizeof *bits, bits);
+        buffer_read(&run->wall_contacts->now.element, 0, m * sizeof *element, element);
+        buffer_read(&run->wall_contacts->now.state, 0, m * sizeof *bits, bits);
         for (size_t k = 0; k < m; k++) count[element[k]] += bits[k] & 1;
         free(element);
         free(bits);
@@ -192,8 +192,7 @@ static double *repack(const double *from, size_t n, int stride, int width)
 static double *read_buffer(struct sim *s, const struct field_row *row, size_t n)
 {
     int stride = stride_of(row);
-    double *all =
-        particles_read(s->dev, buffer_of(s, row), is_float(s, row), 0, (size_t)stride * n);
+    double *all = reals_read(buffer_of(s, row), is_float(s, row), 0, (size_t)stride * n);
     if (stride == row->width) return all;
     double *packed = repack(all, n, stride, row->width);
     free(all);
@@ -261,7 +260,7 @@ void particle_fields_restore(struct sim *s, const struct frame_table *table, boo
         int stride = stride_of(row);
         if (!is_state(s, row) || !row->device || row->of_lists != of_lists) continue;
         double *padded = repack(frame_table_get(table, row->name), n, row->width, stride);
-        particles_write(s->dev, buffer_of(s, row), is_float(s, row), 0, (size_t)stride * n, padded);
+        reals_write(buffer_of(s, row), is_float(s, row), 0, (size_t)stride * n, padded);
         free(padded);
     }
 }

@@ -35,7 +35,7 @@ static int total_tables(struct sim *s, struct sheet *t, struct table *table)
 /* Flags that some drift has set and that nobody has acted on yet. Collective. */
 static void flags_now(struct sim *s, int32_t flag[2])
 {
-    buffer_read(s->dev, &s->particle->particles->flags, 0, 2 * sizeof *flag, flag);
+    buffer_read(&s->particle->particles->flags, 0, 2 * sizeof *flag, flag);
     comm_or_i32(s->comm, flag, 2);
 }
 
@@ -44,7 +44,7 @@ void particle_frame(struct sim *s, int64_t index)
     struct particle_run *run = s->particle;
     enum { SHEETS = 5, OWN_SCALARS = 4 };
     struct particles_host *h =
-        particles_download(s->dev, run->particles, &run->features, s->scene, run->first);
+        particles_download(run->particles, &run->features, s->scene, run->first);
     struct sheet *sheet = fail_alloc(SHEETS * sizeof *sheet);
     int32_t flag[2];
     flags_now(s, flag);

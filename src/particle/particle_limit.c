@@ -23,7 +23,7 @@ struct limit_result particle_limit(struct sim *s)
 {
     struct particle_run *run = s->particle;
     double share = limit_best_share(s->scene);
-    if (run->assigned) ghosts_refresh(s->dev, run->ghosts, run->particles);
+    if (run->assigned) ghosts_refresh(run->ghosts, run->particles);
     struct limit_result r = limit_run(s, s->dt, share);
     if (r.dt >= s->dt) return r; /* as a rule: one run of the kernel */
     r = from_below(s, share);

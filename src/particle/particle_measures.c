@@ -55,9 +55,8 @@ static void measure_wall(struct sim *s, int i, const struct view *view, double *
     size_t n = w ? (size_t)w->now.n : 0, width = w && w->layout.result > 4 ? 8 : 4;
     cl_int *candidate = fail_alloc(n * sizeof *candidate);
     double *result =
-        n > 0 ? particles_read(s->dev, &w->result, run->features.real_is_float, 0, n * width)
-              : NULL;
-    if (n > 0) buffer_read(s->dev, &w->now.candidate, 0, n * sizeof *candidate, candidate);
+        n > 0 ? reals_read(&w->result, run->features.real_is_float, 0, n * width) : NULL;
+    if (n > 0) buffer_read(&w->now.candidate, 0, n * sizeof *candidate, candidate);
     for (size_t k = 0; k < n; k++) {
         const double *f = result + k * width;
         if (w->walls->wall_of[candidate[k]] != wall) continue;
@@ -159,8 +158,7 @@ void particle_measure(struct sim *s, const bool *due, double (*value)[STEP_MEASU
         by_energy |= due[i] && measure_row[s->scene->measure[i].kind].by_energy;
     }
     if (by_energy) energy_now(s, &view.energy);
-    if (by_element)
-        host = particles_download(s->dev, run->particles, &run->features, s->scene, run->first);
+    if (by_element) host = particles_download(run->particles, &run->features, s->scene, run->first);
     view.host = host;
     for (int i = 0; i < s->scene->n_measure; i++)
         if (due[i]) measure_row[s->scene->measure[i].kind].measure(s, i, &view, value[i]);

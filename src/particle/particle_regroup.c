@@ -59,7 +59,7 @@ static void check_inside(struct sim *s, const struct cells_bounds *now)
     comm_or_i32(s->comm, &is_outside, 1);
     if (!is_outside) return;
     struct particles_host *h = particles_download(
-        s->dev, s->particle->particles, &s->particle->features, s->scene, s->particle->first);
+        s->particle->particles, &s->particle->features, s->scene, s->particle->first);
     int64_t gid = INT64_MAX, own = -1;
     for (int64_t i = 0; i < h->n; i++)
         for (int a = 0; a < 3; a++) {
@@ -84,12 +84,11 @@ static void check_inside(struct sim *s, const struct cells_bounds *now)
 static void make_room(struct sim *s)
 {
     struct particle_run *run = s->particle;
-    struct device *dev = s->dev;
     struct particles *p = run->particles;
     struct launch *room = run->select_room;
     size_t preal = particles_preal(&run->features);
-    buffer_reserve(dev, &p->reference, 4 * preal * (size_t)p->n_owned);
-    particles_reserve(dev, p, &run->features, p->n_owned, p->n_owned);
+    buffer_reserve(&p->reference, 4 * preal * (size_t)p->n_owned);
+    particles_reserve(p, &run->features, p->n_owned, p->n_owned);
     launch_set_int(room, "n", (int)p->n_owned);
     launch_set_real(room, "skin", run->skin);
     launch_set_real(room, "horizon", run->horizon);
@@ -98,7 +97,7 @@ static void make_room(struct sim *s)
     launch_bind_buffer(room, "motion", &p->field[FIELD_STATE].now);
     launch_bind_buffer(room, "reference", &p->reference);
     launch_bind_buffer(room, "reach", &p->reach);
-    launch_run(room, dev->compute, p->n_owned, 0, NULL, NULL);
+    launch_run(room, p->n_owned);
 }
 
 void particle_build(struct sim *s)
@@ -110,25 +109,24 @@ void particle_build(struct sim *s)
 void particle_lists(struct sim *s, int64_t step)
 {
     struct particle_run *run = s->particle;
-    struct device *dev = s->dev;
     struct particles *p = run->particles;
-    run->bounds = cells_bounds(dev, run->cells, p, p->n_owned);
+    run->bounds = cells_bounds(run->cells, p, p->n_owned);
     for (int a = 0; a < 3; a++) {
         run->box[a] = run->bounds.low[a];
         run->box[3 + a] = run->bounds.high[a];
     }
     comm_min_f64(s->comm, run->box, 3);
     comm_max_f64(s->comm, run->box + 3, 3);
-    ghosts_plan(dev, run->ghosts, run->owners, run->scan, p, &run->bounds);
+    ghosts_plan(run->ghosts, run->owners, run->scan, p, &run->bounds);
     struct cells_bounds all =
-        p->n_ghost > 0 ? cells_bounds(dev, run->cells, p, p->n_owned + p->n_ghost) : run->bounds;
-    cells_sort(dev, run->cells, run->scan, p, p->n_owned + p->n_ghost, &all);
-    pairs_build(dev, run->pairs, run->cells, run->scan, p);
-    if (run->assigned) assigned_build(dev, run->assigned, run->scan, p, run->pairs, run->ghosts);
+        p->n_ghost > 0 ? cells_bounds(run->cells, p, p->n_owned + p->n_ghost) : run->bounds;
+    cells_sort(run->cells, run->scan, p, p->n_owned + p->n_ghost, &all);
+    pairs_build(run->pairs, run->cells, run->scan, p);
+    if (run->assigned) assigned_build(run->assigned, run->scan, p, run->pairs, run->ghosts);
     if (run->wall_contacts)
-        wall_contacts_build(dev, run->wall_contacts, run->scan, p, step,
-            (int)ceil(run->horizon / s->dt), run->box, run->box + 3);
-    watch_reset(dev, &s->watch, s->comm, &p->flags);
+        wall_contacts_build(run->wall_contacts, run->scan, p, step, (int)ceil(run->horizon / s->dt),
+            run->box, run->box + 3);
+    watch_reset(&s->watch, s->comm, &p->flags);
     run->built_at = step;
     const struct pair_list *l = &run->pairs->now;
     int64_t n_pair = l->n_interior + l->n_mine,
@@ -143,8 +141,8 @@ static int64_t move(struct sim *s, struct cells_bounds bounds, bool is_deal)
 {
     struct particle_run *run = s->particle;
     if (is_deal) particle_cut(s);
-    owners_move(s->dev, run->owners, run->cells, run->scan, run->particles, run->pairs,
-        run->wall_contacts, &bounds);
+    owners_move(run->owners, run->cells, run->scan, run->particles, run->pairs, run->wall_contacts,
+        &bounds);
     int64_t n = run->owners->n_moved;
     comm_sum_i64(s->comm, &n, 1);
     return n;
@@ -154,9 +152,8 @@ static void rebuild(struct sim *s)
 {
     struct particle_run *run = s->particle;
     particle_build(s);
-    pairs_carry(s->dev, run->pairs, run->particles, &run->owners->old_index);
-    if (run->wall_contacts)
-        wall_contacts_carry(s->dev, run->wall_contacts, &run->owners->old_index);
+    pairs_carry(run->pairs, run->particles, &run->owners->old_index);
+    if (run->wall_contacts) wall_contacts_carry(run->wall_contacts, &run->owners->old_index);
     particle_bind(s);
 }
 
@@ -180,18 +177,17 @@ static void deal(struct sim *s, const struct cells_bounds *now)
 void particle_regroup(struct sim *s)
 {
     struct particle_run *run = s->particle;
-    exchange_settle(s->dev, &run->ghosts->exchange);
+    exchange_settle(&run->ghosts->exchange);
     balance_look(s->balance, &s->timers, s->step);
-    struct cells_bounds now =
-        cells_bounds(s->dev, run->cells, run->particles, run->particles->n_owned);
+    struct cells_bounds now = cells_bounds(run->cells, run->particles, run->particles->n_owned);
     int32_t lost = now.has_nan;
     comm_or_i32(s->comm, &lost, 1);
     if (lost) output_stop_numerics(s, "positions or velocities are not numbers any more");
     check_inside(s, &now);
-    if (run->assigned) assigned_complete(s->dev, run->assigned, run->pairs);
+    if (run->assigned) assigned_complete(run->assigned, run->pairs);
     if (run->features.energy) energy_collect(s);
     adapt_skin(s, smallest_radius(s));
-    if (run->wall_contacts) wall_contacts_set_step(s->dev, run->wall_contacts, s->step);
+    if (run->wall_contacts) wall_contacts_set_step(run->wall_contacts, s->step);
     deal(s, &now);
     s->n_rebuild++;
     balance_write(s->balance, (double)s->step * s->dt);

@@ -23,13 +23,10 @@ bool particle_digest(struct sim *s, uint64_t *digest)
     char *state = fail_alloc(n * bytes), *q = fail_alloc(n * 4 * real),
          *none = fail_alloc(n * 4 * real);
     int64_t *gid = fail_alloc(n * sizeof *gid);
-    buffer_read(s->dev, &p->field[FIELD_STATE].now, 0, n * bytes, state);
-    buffer_read(s->dev, &p->field[FIELD_GID].now, 0, n * sizeof *gid, gid);
-    if (f->orientation) buffer_read(s->dev, &p->field[FIELD_ORIENTATION].now, 0, n * 4 * real, q);
-    for (size_t i = 0; i < n && !f->orientation; i++) {
-        if (f->real_is_float) ((float *)(void *)q)[4 * i] = 1;
-        else ((double *)(void *)q)[4 * i] = 1;
-    }
+    buffer_read(&p->field[FIELD_STATE].now, 0, n * bytes, state);
+    buffer_read(&p->field[FIELD_GID].now, 0, n * sizeof *gid, gid);
+    if (f->orientation) buffer_read(&p->field[FIELD_ORIENTATION].now, 0, n * 4 * real, q);
+    for (size_t i = 0; i < n && !f->orientation; i++) reals_set(q, f->real_is_float, 4 * i, 1);
     const char *motion = state + 4 * preal;
     struct digest_part part[4] = {{state, f->position_is_float, 3, (int)(bytes / preal)},
         {motion, f->real_is_float, 3, stride}, {q, f->real_is_float, 4, 4},

@@ -53,17 +53,17 @@ static void place(struct sim *s, const struct frame_table *t)
     const double *reference = frame_table_get(t, "reference");
     h->x = fail_alloc(3 * n * sizeof *h->x);
     for (size_t i = 0; i < n; i++) memcpy(h->x + 3 * i, reference + 4 * i, 3 * sizeof *h->x);
-    particles_place(s->dev, p, &run->features, h);
-    buffer_reserve(s->dev, &p->reference, 4 * particles_preal(&run->features) * n);
+    particles_place(p, &run->features, h);
+    buffer_reserve(&p->reference, 4 * particles_preal(&run->features) * n);
     particle_fields_restore(s, t, true);
     int64_t built_at = h5_read_i64(s->from->reader, "built_at");
     s->step = s->from->step;
-    if (run->wall_contacts) wall_contacts_set_step(s->dev, run->wall_contacts, built_at);
+    if (run->wall_contacts) wall_contacts_set_step(run->wall_contacts, built_at);
     particle_lists(s, built_at);
-    if (run->wall_contacts) wall_contacts_set_step(s->dev, run->wall_contacts, s->step);
+    if (run->wall_contacts) wall_contacts_set_step(run->wall_contacts, s->step);
     free(h->x);
     h->x = now;
-    particles_write_state(s->dev, p, &run->features, h);
+    particles_write_state(p, &run->features, h);
     particle_fields_restore(s, t, false);
     particles_host_free(h);
 }
@@ -105,9 +105,9 @@ static void restore_flags(struct sim *s)
     struct particle_run *run = s->particle;
     cl_int flag[2] = {(cl_int)h5_read_i64(s->from->reader, "stale"),
         (cl_int)h5_read_i64(s->from->reader, "lost")};
-    buffer_write(s->dev, &run->particles->flags, 0, sizeof flag, flag);
+    buffer_write(&run->particles->flags, 0, sizeof flag, flag);
     if (!watch_due(s->step)) return;
-    watch_read(s->dev, &s->watch, &run->particles->flags);
+    watch_read(&s->watch, &run->particles->flags);
     watch_vote(&s->watch, s->comm, 0);
 }
 

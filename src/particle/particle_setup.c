@@ -51,10 +51,8 @@ static void set_parameters(
         else contact_table_parameters(s->scene, a, b, wall, r, m, s->dt, row + k * width);
     }
     if (launch_has(launch, "table")) {
-        buffer_reserve(
-            s->dev, buffer, (size_t)n_row * (size_t)width * particles_real(&run->features));
-        particles_write(
-            s->dev, buffer, run->features.real_is_float, 0, (size_t)n_row * (size_t)width, row);
+        buffer_reserve(buffer, (size_t)n_row * (size_t)width * particles_real(&run->features));
+        reals_write(buffer, run->features.real_is_float, 0, (size_t)n_row * (size_t)width, row);
         launch_bind_buffer(launch, "table", buffer);
     } else {
         contact_table_set(launch, row);
@@ -95,8 +93,8 @@ static void create_kernels(struct sim *s)
     if (run->wall_force) launch_set_batch(run->wall_force, BATCH);
     run->gather = launch_create(run->program_body, "gather");
     run->kick_drift = launch_create(run->program_body, "kick_drift");
-    buffer_init(&run->table_pair, "pair table");
-    buffer_init(&run->table_wall, "wall table");
+    buffer_init(&run->table_pair, s->dev, "pair table");
+    buffer_init(&run->table_wall, s->dev, "wall table");
     set_parameters(s, run->pair_force, &run->table_pair, false, run->features.materials);
     if (run->wall_force)
         set_parameters(s, run->wall_force, &run->table_wall, true, run->features.wall_table);
@@ -119,7 +117,7 @@ static void distribute(struct sim *s)
     particle_spread(s, n > 0 ? e->x + 3 * begin : e->x, n);
     unsigned char *take = fail_alloc((size_t)e->n);
     for (int64_t i = 0; i < e->n; i++) take[i] = rcb_owner(run->rcb, e->x + 3 * i) == s->comm->rank;
-    particles_upload(s->dev, run->particles, &run->features, e, s->scene, take);
+    particles_upload(run->particles, &run->features, e, s->scene, take);
     free(take);
 }
 
@@ -150,7 +148,7 @@ static void start(struct sim *s)
     struct particle_run *run = s->particle;
     run->skin = SKIN_START * smallest_radius(run->first);
     distribute(s);
-    if (run->wall_contacts) wall_contacts_set_step(s->dev, run->wall_contacts, 0);
+    if (run->wall_contacts) wall_contacts_set_step(run->wall_contacts, 0);
     particle_build(s);
     particle_bind(s);
     run->limit = limit_create(s);
@@ -202,23 +200,23 @@ void particle_free(struct sim *s)
         run->select_room, run->pair_force, run->wall_force, run->gather, run->kick_drift};
     struct program *program[] = {run->program_lists, run->program_pair, run->program_wall,
         run->program_body, run->program_assign};
-    if (run->ghosts) exchange_settle(s->dev, &run->ghosts->exchange);
-    limit_free(s->dev, run->limit);
-    energy_free(s->dev, run->energy);
-    assigned_free(s->dev, run->assigned);
-    ghosts_free(s->dev, run->ghosts);
-    owners_free(s->dev, run->owners);
-    wall_contacts_free(s->dev, run->wall_contacts);
-    pairs_free(s->dev, run->pairs);
-    cells_free(s->dev, run->cells);
-    scan_free(s->dev, run->scan);
-    particles_free(s->dev, run->particles);
+    if (run->ghosts) exchange_settle(&run->ghosts->exchange);
+    limit_free(run->limit);
+    energy_free(run->energy);
+    assigned_free(run->assigned);
+    ghosts_free(run->ghosts);
+    owners_free(run->owners);
+    wall_contacts_free(run->wall_contacts);
+    pairs_free(run->pairs);
+    cells_free(run->cells);
+    scan_free(run->scan);
+    particles_free(run->particles);
     rcb_free(run->rcb);
     walls_free(run->walls);
     generate_free(run->first);
     free(run->left);
-    buffer_free(s->dev, &run->table_pair);
-    buffer_free(s->dev, &run->table_wall);
+    buffer_free(&run->table_pair);
+    buffer_free(&run->table_wall);
     for (int i = 0; i < 5; i++) launch_free(launch[i]);
     for (int i = 0; i < 5; i++) program_free(program[i]);
     free(run);

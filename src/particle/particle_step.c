@@ -21,7 +21,7 @@ static void launch_pairs(
         launch_set_int(run->pair_force, "first", (int)first);
         launch_set_int(run->pair_force, "end", (int)(first + n));
     }
-    if (n > 0 || done) launch_run(run->pair_force, s->dev->compute, n, wait ? 1 : 0, wait, done);
+    if (n > 0 || done) launch_run_on(run->pair_force, s->dev->compute, n, wait, done);
 }
 
 /* Interior pairs first <= p < end. With messages to come, `most` is the event of their larger part:
@@ -41,10 +41,10 @@ static void send_back(struct sim *s, int64_t first)
 {
     struct particle_run *run = s->particle;
     cl_event most = NULL;
-    assigned_begin(s->dev, run->assigned, ASSIGNED_RESULTS, &s->timers);
+    assigned_begin(run->assigned, ASSIGNED_RESULTS, &s->timers);
     launch_interior(s, first, run->pairs->now.n_interior, &most);
     device_flush(s->dev);
-    assigned_swap(s->dev, run->assigned, ASSIGNED_RESULTS, &most, &s->timers);
+    assigned_swap(run->assigned, ASSIGNED_RESULTS, &most, &s->timers);
 }
 
 static void launch_walls(struct sim *s)
@@ -52,9 +52,9 @@ static void launch_walls(struct sim *s)
     struct particle_run *run = s->particle;
     struct wall_contacts *w = run->wall_contacts;
     if (!w || w->now.n == 0) return;
-    if (run->features.triangle) wall_contacts_select(s->dev, w, run->particles);
+    if (run->features.triangle) wall_contacts_select(w, run->particles);
     launch_set_int(run->wall_force, "n_candidate", (int)w->now.n);
-    launch_run(run->wall_force, s->dev->compute, w->now.n, 0, NULL, NULL);
+    launch_run(run->wall_force, w->now.n);
 }
 
 void particle_forces(struct sim *s)
@@ -63,15 +63,15 @@ void particle_forces(struct sim *s)
     const struct pair_list *l = &run->pairs->now;
     int64_t n_first = run->assigned ? l->n_interior / 2 / BATCH * BATCH : l->n_interior;
     cl_event most = NULL;
-    if (run->wall_contacts) wall_contacts_set_step(s->dev, run->wall_contacts, s->step);
-    if (run->assigned) assigned_begin(s->dev, run->assigned, ASSIGNED_STATES, &s->timers);
-    else ghosts_begin(s->dev, run->ghosts, &s->timers);
+    if (run->wall_contacts) wall_contacts_set_step(run->wall_contacts, s->step);
+    if (run->assigned) assigned_begin(run->assigned, ASSIGNED_STATES, &s->timers);
+    else ghosts_begin(run->ghosts, &s->timers);
     launch_interior(s, 0, n_first, &most);
     launch_walls(s);
     device_flush(s->dev);
     const cl_event *arrived = NULL;
-    if (run->assigned) assigned_swap(s->dev, run->assigned, ASSIGNED_STATES, &most, &s->timers);
-    else arrived = ghosts_swap(s->dev, run->ghosts, run->particles, &most, &s->timers);
+    if (run->assigned) assigned_swap(run->assigned, ASSIGNED_STATES, &most, &s->timers);
+    else arrived = ghosts_swap(run->ghosts, run->particles, &most, &s->timers);
     trace_part(s->dev->trace, "boundary");
     launch_pairs(s, l->first_boundary, l->n_mine, arrived, NULL);
     trace_part(s->dev->trace, NULL);
@@ -81,7 +81,7 @@ void particle_forces(struct sim *s)
 /* After the drift to the next step. */
 static void read_flags(struct sim *s)
 {
-    if (watch_due(s->step + 1)) watch_read(s->dev, &s->watch, &s->particle->particles->flags);
+    if (watch_due(s->step + 1)) watch_read(&s->watch, &s->particle->particles->flags);
     else device_flush(s->dev);
 }
 
@@ -91,13 +91,13 @@ void particle_advance(struct sim *s, bool observe)
     particle_forces(s);
     if (watch_due(s->step)) watch_vote(&s->watch, s->comm, output_stop_wanted(s) ? WATCH_STOP : 0);
     launch_set_int(run->gather, "observe", observe);
-    launch_run(run->gather, s->dev->compute, run->particles->n_owned, 0, NULL, NULL);
+    launch_run(run->gather, run->particles->n_owned);
     if (!observe) read_flags(s);
 }
 
 void particle_begin_step(struct sim *s)
 {
     struct particle_run *run = s->particle;
-    launch_run(run->kick_drift, s->dev->compute, run->particles->n_owned, 0, NULL, NULL);
+    launch_run(run->kick_drift, run->particles->n_owned);
     read_flags(s);
 }

@@ -22,31 +22,31 @@ struct particles *particles_create(
     p->field[FIELD_ORIENTATION].bytes = features->orientation ? 4 * particles_real(features) : 0;
     for (int i = 0; i < FIELD_N; i++) {
         p->field[i].name = name[i][0];
-        buffer_init(&p->field[i].now, name[i][0]);
-        buffer_init(&p->field[i].spare, name[i][1]);
-        buffer_reserve(dev, &p->field[i].now, 0);
-        buffer_reserve(dev, &p->field[i].spare, 0);
+        buffer_init(&p->field[i].now, dev, name[i][0]);
+        buffer_init(&p->field[i].spare, dev, name[i][1]);
+        buffer_reserve(&p->field[i].now, 0);
+        buffer_reserve(&p->field[i].spare, 0);
     }
-    buffer_init(&p->reference, "reference");
-    buffer_init(&p->reach, "reach");
-    buffer_init(&p->force, "force");
-    buffer_init(&p->torque, "torque");
-    buffer_init(&p->flags, "flags");
-    buffer_reserve(dev, &p->flags, 2 * sizeof(cl_int));
+    buffer_init(&p->reference, dev, "reference");
+    buffer_init(&p->reach, dev, "reach");
+    buffer_init(&p->force, dev, "force");
+    buffer_init(&p->torque, dev, "torque");
+    buffer_init(&p->flags, dev, "flags");
+    buffer_reserve(&p->flags, 2 * sizeof(cl_int));
     p->gather = launch_create(lists, "record_gather");
     p->copy = launch_create(lists, "record_copy");
     return p;
 }
 
-void particles_free(struct device *dev, struct particles *p)
+void particles_free(struct particles *p)
 {
     if (!p) return;
     for (int i = 0; i < FIELD_N; i++) {
-        buffer_free(dev, &p->field[i].now);
-        buffer_free(dev, &p->field[i].spare);
+        buffer_free(&p->field[i].now);
+        buffer_free(&p->field[i].spare);
     }
     struct buffer *other[] = {&p->reference, &p->reach, &p->force, &p->torque, &p->flags};
-    for (int i = 0; i < 5; i++) buffer_free(dev, other[i]);
+    for (int i = 0; i < 5; i++) buffer_free(other[i]);
     launch_free(p->gather);
     launch_free(p->copy);
     free(p);
@@ -54,49 +54,47 @@ void particles_free(struct device *dev, struct particles *p)
 
 /* Grows a buffer and keeps its first bytes: the rare case of ghosts that do not fit behind the
  * owned elements. */
-static void reserve_keep(
-    struct device *dev, struct particles *p, struct buffer *buffer, size_t keep, size_t bytes)
+static void reserve_keep(struct particles *p, struct buffer *buffer, size_t keep, size_t bytes)
 {
     if (bytes <= buffer->capacity) {
-        buffer_reserve(dev, buffer, bytes);
+        buffer_reserve(buffer, bytes);
         return;
     }
     struct buffer larger;
-    buffer_init(&larger, buffer->name);
-    buffer_reserve(dev, &larger, bytes + bytes / 4);
-    buffer_reserve(dev, &larger, bytes);
+    buffer_init(&larger, buffer->dev, buffer->name);
+    buffer_reserve(&larger, bytes + bytes / 4);
+    buffer_reserve(&larger, bytes);
     if (keep > 0) {
         int words = (int)(keep / 4);
         launch_set_int(p->copy, "n", words);
         launch_bind_buffer(p->copy, "from", buffer);
         launch_bind_buffer(p->copy, "to", &larger);
-        launch_run(p->copy, dev->compute, words, 0, NULL, NULL);
+        launch_run(p->copy, words);
     }
-    device_finish(dev);
-    buffer_free(dev, buffer);
+    device_finish(buffer->dev);
+    buffer_free(buffer);
     *buffer = larger;
 }
 
-void particles_reserve(struct device *dev, struct particles *p, const struct features *features,
-    int64_t n, int64_t keep)
+void particles_reserve(
+    struct particles *p, const struct features *features, int64_t n, int64_t keep)
 {
     for (int i = 0; i < FIELD_N; i++)
-        reserve_keep(dev, p, &p->field[i].now, p->field[i].bytes * (size_t)keep,
-            p->field[i].bytes * (size_t)n);
-    reserve_keep(dev, p, &p->reach, particles_preal(features) * (size_t)keep,
+        reserve_keep(
+            p, &p->field[i].now, p->field[i].bytes * (size_t)keep, p->field[i].bytes * (size_t)n);
+    reserve_keep(p, &p->reach, particles_preal(features) * (size_t)keep,
         particles_preal(features) * (size_t)n);
-    buffer_reserve(dev, &p->force, 4 * particles_real(features) * (size_t)n);
-    buffer_reserve(dev, &p->torque, features->spin ? 4 * particles_real(features) * (size_t)n : 0);
+    buffer_reserve(&p->force, 4 * particles_real(features) * (size_t)n);
+    buffer_reserve(&p->torque, features->spin ? 4 * particles_real(features) * (size_t)n : 0);
 }
 
-void particles_reserve_spare(struct device *dev, struct particles *p, int64_t n)
+void particles_reserve_spare(struct particles *p, int64_t n)
 {
     for (int i = 0; i < FIELD_N; i++)
-        buffer_reserve(dev, &p->field[i].spare, p->field[i].bytes * (size_t)n);
+        buffer_reserve(&p->field[i].spare, p->field[i].bytes * (size_t)n);
 }
 
-void particles_permute(
-    struct device *dev, struct particles *p, const struct buffer *index, int64_t n)
+void particles_permute(struct particles *p, const struct buffer *index, int64_t n)
 {
     for (int i = 0; i < FIELD_N; i++) {
         if (p->field[i].bytes == 0) continue;
@@ -105,7 +103,7 @@ void particles_permute(
         launch_bind_buffer(p->gather, "index", index);
         launch_bind_buffer(p->gather, "from", &p->field[i].now);
         launch_bind_buffer(p->gather, "to", &p->field[i].spare);
-        launch_run(p->gather, dev->compute, n, 0, NULL, NULL);
+        launch_run(p->gather, n);
     }
 }
 
@@ -130,38 +128,30 @@ static void write_record(
     const double *x = h->x + 3 * i, *v = h->v + 3 * i, *w = h->w + 3 * i;
     double head[4] = {x[0], x[1], x[2], h->radius[i]},
            tail[8] = {v[0], v[1], v[2], 1 / h->mass[i], w[0], w[1], w[2], h->material[i]};
-    for (int k = 0; k < 4; k++) {
-        if (f->position_is_float) ((float *)record)[k] = (float)head[k];
-        else ((double *)record)[k] = head[k];
-    }
+    for (size_t k = 0; k < 4; k++) reals_set(record, f->position_is_float, k, head[k]);
     record += 4 * particles_preal(f);
-    for (int k = 0; k < (f->spin ? 8 : 4); k++) {
-        if (f->real_is_float) ((float *)record)[k] = (float)tail[k];
-        else ((double *)record)[k] = tail[k];
-    }
+    for (size_t k = 0; k < (f->spin ? 8 : 4); k++) reals_set(record, f->real_is_float, k, tail[k]);
 }
 
-void particles_write_state(struct device *dev, struct particles *p, const struct features *f,
-    const struct particles_host *h)
+void particles_write_state(
+    struct particles *p, const struct features *f, const struct particles_host *h)
 {
     size_t bytes = state_bytes(f);
     char *state = fail_alloc((size_t)h->n * bytes);
     for (int64_t i = 0; i < h->n; i++) write_record(state + (size_t)i * bytes, f, h, i);
-    buffer_write(dev, &p->field[FIELD_STATE].now, 0, (size_t)h->n * bytes, state);
+    buffer_write(&p->field[FIELD_STATE].now, 0, (size_t)h->n * bytes, state);
     free(state);
 }
 
-void particles_place(struct device *dev, struct particles *p, const struct features *f,
-    const struct particles_host *h)
+void particles_place(struct particles *p, const struct features *f, const struct particles_host *h)
 {
     p->n_owned = h->n;
     p->n_ghost = 0;
-    particles_reserve(dev, p, f, h->n, 0);
-    particles_write_state(dev, p, f, h);
-    buffer_write(dev, &p->field[FIELD_GID].now, 0, (size_t)h->n * sizeof *h->gid, h->gid);
+    particles_reserve(p, f, h->n, 0);
+    particles_write_state(p, f, h);
+    buffer_write(&p->field[FIELD_GID].now, 0, (size_t)h->n * sizeof *h->gid, h->gid);
     if (f->orientation)
-        particles_write(
-            dev, &p->field[FIELD_ORIENTATION].now, f->real_is_float, 0, 4 * (size_t)h->n, h->q);
+        reals_write(&p->field[FIELD_ORIENTATION].now, f->real_is_float, 0, 4 * (size_t)h->n, h->q);
 }
 
 struct particles_host *particles_host_create(int64_t n_row)
@@ -190,7 +180,7 @@ void particles_host_kind(struct particles_host *h, int64_t i, const struct scene
     h->mass[i] = mass_of(scene, h->material[i], first->radius[gid]);
 }
 
-void particles_upload(struct device *dev, struct particles *p, const struct features *features,
+void particles_upload(struct particles *p, const struct features *features,
     const struct elements_host *elements, const struct scene *scene, const unsigned char *take)
 {
     int64_t n = 0, k = 0;
@@ -205,64 +195,31 @@ void particles_upload(struct device *dev, struct particles *p, const struct feat
         particles_host_kind(h, k++, scene, elements);
     }
     p->n_global = elements->n;
-    particles_place(dev, p, features, h);
+    particles_place(p, features, h);
     particles_host_free(h);
 }
 
-double *particles_read(
-    struct device *dev, const struct buffer *buffer, bool is_float, size_t first, size_t n)
-{
-    double *value = fail_alloc(n * sizeof *value);
-    if (is_float) {
-        float *raw = fail_alloc(n * sizeof *raw);
-        buffer_read(dev, buffer, first * sizeof *raw, n * sizeof *raw, raw);
-        for (size_t i = 0; i < n; i++) value[i] = (double)raw[i];
-        free(raw);
-    } else {
-        buffer_read(dev, buffer, first * sizeof *value, n * sizeof *value, value);
-    }
-    return value;
-}
-
-void particles_write(struct device *dev, struct buffer *buffer, bool is_float, size_t first,
-    size_t n, const double *value)
-{
-    if (is_float) {
-        float *raw = fail_alloc(n * sizeof *raw);
-        for (size_t i = 0; i < n; i++) raw[i] = (float)value[i];
-        buffer_write(dev, buffer, first * sizeof *raw, n * sizeof *raw, raw);
-        free(raw);
-    } else {
-        buffer_write(dev, buffer, first * sizeof *value, n * sizeof *value, value);
-    }
-}
-
-static double number(const char *record, bool is_float, int k)
-{
-    return is_float ? (double)((const float *)record)[k] : ((const double *)record)[k];
-}
-
-struct particles_host *particles_download(struct device *dev, const struct particles *p,
-    const struct features *f, const struct scene *scene, const struct elements_host *first)
+struct particles_host *particles_download(const struct particles *p, const struct features *f,
+    const struct scene *scene, const struct elements_host *first)
 {
     size_t n = (size_t)p->n_owned, bytes = state_bytes(f);
     struct particles_host *h = particles_host_create(p->n_owned);
     char *state = fail_alloc(n * bytes);
-    buffer_read(dev, &p->field[FIELD_STATE].now, 0, n * bytes, state);
-    buffer_read(dev, &p->field[FIELD_GID].now, 0, n * sizeof *h->gid, h->gid);
+    buffer_read(&p->field[FIELD_STATE].now, 0, n * bytes, state);
+    buffer_read(&p->field[FIELD_GID].now, 0, n * sizeof *h->gid, h->gid);
     for (size_t i = 0; i < n; i++) {
         const char *head = state + i * bytes, *tail = head + 4 * particles_preal(f);
-        for (int a = 0; a < 3; a++) {
-            h->x[3 * i + (size_t)a] = number(head, f->position_is_float, a);
-            h->v[3 * i + (size_t)a] = number(tail, f->real_is_float, a);
-            if (f->spin) h->w[3 * i + (size_t)a] = number(tail, f->real_is_float, 4 + a);
+        for (size_t a = 0; a < 3; a++) {
+            h->x[3 * i + a] = reals_get(head, f->position_is_float, a);
+            h->v[3 * i + a] = reals_get(tail, f->real_is_float, a);
+            if (f->spin) h->w[3 * i + a] = reals_get(tail, f->real_is_float, 4 + a);
         }
         particles_host_kind(h, (int64_t)i, scene, first);
-        h->radius[i] = number(head, f->position_is_float, 3);
+        h->radius[i] = reals_get(head, f->position_is_float, 3);
     }
     if (f->orientation) {
         free(h->q);
-        h->q = particles_read(dev, &p->field[FIELD_ORIENTATION].now, f->real_is_float, 0, 4 * n);
+        h->q = reals_read(&p->field[FIELD_ORIENTATION].now, f->real_is_float, 0, 4 * n);
     }
     free(state);
     return h;

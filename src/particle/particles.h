@@ -8,6 +8,7 @@
 
 #include "features.h"
 #include "device/launch.h"
+#include "device/reals.h"
 
 enum { FIELD_STATE, FIELD_GID, FIELD_ORIENTATION, FIELD_N };
 
@@ -32,27 +33,26 @@ struct particles {
 
 static inline size_t particles_real(const struct features *f)
 {
-    return f->real_is_float ? sizeof(float) : sizeof(double);
+    return reals_size(f->real_is_float);
 }
 static inline size_t particles_preal(const struct features *f)
 {
-    return f->position_is_float ? sizeof(float) : sizeof(double);
+    return reals_size(f->position_is_float);
 }
 
 /* `lists`: program with records.cl. */
 struct particles *particles_create(
     struct device *dev, const struct features *features, const struct program *lists);
-void particles_free(struct device *dev, struct particles *p);
+void particles_free(struct particles *p);
 
 /* Room for n elements in all; what the fields hold for the first `keep` elements stays. */
-void particles_reserve(struct device *dev, struct particles *p, const struct features *features,
-    int64_t n, int64_t keep);
+void particles_reserve(
+    struct particles *p, const struct features *features, int64_t n, int64_t keep);
 /* The spare buffers, contents lost. */
-void particles_reserve_spare(struct device *dev, struct particles *p, int64_t n);
+void particles_reserve_spare(struct particles *p, int64_t n);
 /* spare[i] = now[index[i]] for i < n, all fields; then particles_swap makes the spare ones
  * current. */
-void particles_permute(
-    struct device *dev, struct particles *p, const struct buffer *index, int64_t n);
+void particles_permute(struct particles *p, const struct buffer *index, int64_t n);
 void particles_swap(struct particles *p);
 
 /* Owned elements on the host, as plain doubles (float bits widen exactly), for frames, digests and
@@ -64,7 +64,7 @@ struct particles_host {
     double *radius, *mass;
     int32_t *material;
 };
-struct particles_host *particles_download(struct device *dev, const struct particles *p,
+struct particles_host *particles_download(const struct particles *p,
     const struct features *features, const struct scene *scene, const struct elements_host *first);
 /* n elements, all numbers zero but the quaternions' w. */
 struct particles_host *particles_host_create(int64_t n);
@@ -74,19 +74,13 @@ void particles_host_kind(struct particles_host *host, int64_t i, const struct sc
 void particles_host_free(struct particles_host *host);
 
 /* Takes over the elements of which take[i] is set. mass: [kg] by element. */
-void particles_upload(struct device *dev, struct particles *p, const struct features *features,
+void particles_upload(struct particles *p, const struct features *features,
     const struct elements_host *elements, const struct scene *scene, const unsigned char *take);
 /* The same of rows that are here already; without p->n_global. */
-void particles_place(struct device *dev, struct particles *p, const struct features *features,
-    const struct particles_host *host);
+void particles_place(
+    struct particles *p, const struct features *features, const struct particles_host *host);
 /* Writes places and motions of the owned elements anew, in their order. */
-void particles_write_state(struct device *dev, struct particles *p, const struct features *features,
-    const struct particles_host *host);
-
-/* real or preal array on the device to doubles on the host, and back; n numbers, blocking. */
-double *particles_read(
-    struct device *dev, const struct buffer *buffer, bool is_float, size_t first, size_t n);
-void particles_write(struct device *dev, struct buffer *buffer, bool is_float, size_t first,
-    size_t n, const double *value);
+void particles_write_state(
+    struct particles *p, const struct features *features, const struct particles_host *host);
 
 #endif

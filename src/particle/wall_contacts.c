@@ -33,20 +33,20 @@ static void init_buffers(struct device *dev, struct wall_contacts *w)
     struct wall_list *lists[] = {&w->now, &w->old};
     own_buffers(w, own);
     for (int i = 0; i < OWN_BUFFERS; i++) {
-        buffer_init(own[i], name[i]);
-        buffer_reserve(dev, own[i], 64);
+        buffer_init(own[i], dev, name[i]);
+        buffer_reserve(own[i], 64);
     }
     for (int k = 0; k < 2; k++) {
         list_buffers(lists[k], list);
         for (int i = 0; i < LIST_BUFFERS; i++) {
-            buffer_init(list[i], list_name[i]);
-            buffer_reserve(dev, list[i], 64);
+            buffer_init(list[i], dev, list_name[i]);
+            buffer_reserve(list[i], 64);
         }
     }
     contact_arrivals_init(dev, &w->arrivals, "arrived wall contacts");
 }
 
-static void upload_walls(struct device *dev, struct wall_contacts *w, const struct scene *scene)
+static void upload_walls(struct wall_contacts *w, const struct scene *scene)
 {
     const struct walls *walls = w->walls;
     bool is_float = w->features->position_is_float;
@@ -60,19 +60,19 @@ static void upload_walls(struct device *dev, struct wall_contacts *w, const stru
             bounds[6 * i + 3 + a] = fmin(walls->high[3 * i + a], 1e30);
         }
     for (size_t i = 0; i < n_wall; i++) material[i] = scene->wall[i].material;
-    buffer_reserve(dev, &w->primitive, 12 * n * preal);
-    buffer_reserve(dev, &w->bounds, 6 * n * preal);
-    buffer_reserve(dev, &w->features_of, 6 * n * sizeof(cl_int));
-    buffer_reserve(dev, &w->wall_of, n * sizeof(cl_int));
-    buffer_reserve(dev, &w->material, n_wall * sizeof(cl_int));
-    buffer_reserve(dev, &w->room, n_wall * preal);
-    buffer_reserve(dev, &w->pose, n_wall * POSE_WIDTH * preal);
-    buffer_reserve(dev, &w->batch, WALL_BATCH * n_wall * POSE_WIDTH * preal);
-    particles_write(dev, &w->primitive, is_float, 0, 12 * n, walls->primitive);
-    particles_write(dev, &w->bounds, is_float, 0, 6 * n, bounds);
-    buffer_write(dev, &w->features_of, 0, 6 * n * sizeof(cl_int), walls->features);
-    buffer_write(dev, &w->wall_of, 0, n * sizeof(cl_int), walls->wall_of);
-    buffer_write(dev, &w->material, 0, n_wall * sizeof(cl_int), material);
+    buffer_reserve(&w->primitive, 12 * n * preal);
+    buffer_reserve(&w->bounds, 6 * n * preal);
+    buffer_reserve(&w->features_of, 6 * n * sizeof(cl_int));
+    buffer_reserve(&w->wall_of, n * sizeof(cl_int));
+    buffer_reserve(&w->material, n_wall * sizeof(cl_int));
+    buffer_reserve(&w->room, n_wall * preal);
+    buffer_reserve(&w->pose, n_wall * POSE_WIDTH * preal);
+    buffer_reserve(&w->batch, WALL_BATCH * n_wall * POSE_WIDTH * preal);
+    reals_write(&w->primitive, is_float, 0, 12 * n, walls->primitive);
+    reals_write(&w->bounds, is_float, 0, 6 * n, bounds);
+    buffer_write(&w->features_of, 0, 6 * n * sizeof(cl_int), walls->features);
+    buffer_write(&w->wall_of, 0, n * sizeof(cl_int), walls->wall_of);
+    buffer_write(&w->material, 0, n_wall * sizeof(cl_int), material);
     free(bounds);
     free(material);
 }
@@ -88,7 +88,7 @@ struct wall_contacts *wall_contacts_create(struct device *dev, const struct comm
     w->dt = dt;
     w->layout = contact_layout(dev, force);
     init_buffers(dev, w);
-    upload_walls(dev, w, scene);
+    upload_walls(w, scene);
     w->poses = fail_alloc(WALL_BATCH * (size_t)walls->n_wall * sizeof *w->poses);
     w->built = fail_alloc((size_t)walls->n_wall * sizeof *w->built);
     w->room_host = fail_alloc((size_t)walls->n_wall * sizeof *w->room_host);
@@ -104,18 +104,18 @@ struct wall_contacts *wall_contacts_create(struct device *dev, const struct comm
     return w;
 }
 
-void wall_contacts_free(struct device *dev, struct wall_contacts *w)
+void wall_contacts_free(struct wall_contacts *w)
 {
     if (!w) return;
     struct buffer *own[OWN_BUFFERS], *list[LIST_BUFFERS];
     struct wall_list *lists[] = {&w->now, &w->old};
     own_buffers(w, own);
-    for (int i = 0; i < OWN_BUFFERS; i++) buffer_free(dev, own[i]);
+    for (int i = 0; i < OWN_BUFFERS; i++) buffer_free(own[i]);
     for (int k = 0; k < 2; k++) {
         list_buffers(lists[k], list);
-        for (int i = 0; i < LIST_BUFFERS; i++) buffer_free(dev, list[i]);
+        for (int i = 0; i < LIST_BUFFERS; i++) buffer_free(list[i]);
     }
-    contact_arrivals_free(dev, &w->arrivals);
+    contact_arrivals_free(&w->arrivals);
     struct launch *launch[] = {w->rows, w->carry, w->leave, w->copy, w->keep_launch};
     for (int i = 0; i < 5; i++) launch_free(launch[i]);
     free(w->poses);
@@ -125,7 +125,7 @@ void wall_contacts_free(struct device *dev, struct wall_contacts *w)
 }
 
 /* The batch that has the step. Batches begin at the same steps whenever the run itself began. */
-static void new_batch(struct device *dev, struct wall_contacts *w, int64_t step, bool upload)
+static void new_batch(struct wall_contacts *w, int64_t step, bool upload)
 {
     int64_t first = step / WALL_BATCH * WALL_BATCH;
     size_t n = WALL_BATCH * (size_t)w->walls->n_wall;
@@ -147,19 +147,19 @@ static void new_batch(struct device *dev, struct wall_contacts *w, int64_t step,
         memcpy(r + 18, p->centre, sizeof p->centre);
         r[21] = p->active;
     }
-    particles_write(dev, &w->batch, w->features->position_is_float, 0, n * POSE_WIDTH, row);
+    reals_write(&w->batch, w->features->position_is_float, 0, n * POSE_WIDTH, row);
     free(row);
 }
 
-void wall_contacts_set_step(struct device *dev, struct wall_contacts *w, int64_t step)
+void wall_contacts_set_step(struct wall_contacts *w, int64_t step)
 {
     bool first = w->batch_first < 0, varies = w->features->moving || w->features->timed;
     if (!first && !varies) return;
     if (first || step >= w->batch_first + WALL_BATCH)
-        new_batch(dev, w, step, first || w->features->moving);
+        new_batch(w, step, first || w->features->moving);
     if (!first && !w->features->moving) return;
     launch_set_int(w->copy, "first", (int)(step - w->batch_first) * w->walls->n_wall * POSE_WIDTH);
-    launch_run(w->copy, dev->compute, (int64_t)w->walls->n_wall * POSE_WIDTH, 0, NULL, NULL);
+    launch_run(w->copy, (int64_t)w->walls->n_wall * POSE_WIDTH);
 }
 
 const struct wall_pose *wall_contacts_pose(const struct wall_contacts *w, int64_t step)
@@ -170,8 +170,8 @@ const struct wall_pose *wall_contacts_pose(const struct wall_contacts *w, int64_
 
 /* Walls in motion get room for horizon_steps at their present speed; what is not there yet is
  * listed when it appears; what is gone is left out. */
-static void set_room(struct device *dev, struct wall_contacts *w, int64_t step, int horizon_steps,
-    const double low[3], const double high[3])
+static void set_room(struct wall_contacts *w, int64_t step, int horizon_steps, const double low[3],
+    const double high[3])
 {
     const struct wall_pose *now = wall_contacts_pose(w, step);
     int64_t later = step - w->batch_first + 1;
@@ -190,40 +190,39 @@ static void set_room(struct device *dev, struct wall_contacts *w, int64_t step, 
             w->room_host[k] = horizon_steps * fmax(per_step, speed / fmax(left, 1));
         }
     }
-    particles_write(
-        dev, &w->room, w->features->position_is_float, 0, (size_t)w->walls->n_wall, w->room_host);
+    reals_write(
+        &w->room, w->features->position_is_float, 0, (size_t)w->walls->n_wall, w->room_host);
 }
 
-static void reserve_contacts(struct device *dev, struct wall_contacts *w)
+static void reserve_contacts(struct wall_contacts *w)
 {
     struct wall_list *l = &w->now;
     size_t real = particles_real(w->features), capacity = (size_t)l->capacity;
-    buffer_reserve(dev, &l->candidate, capacity * sizeof(cl_int));
-    buffer_reserve(dev, &l->element, capacity * sizeof(cl_int));
-    buffer_reserve(dev, &w->keep, capacity * sizeof(cl_int));
-    buffer_reserve(dev, &w->result, capacity * 8 * real);
+    buffer_reserve(&l->candidate, capacity * sizeof(cl_int));
+    buffer_reserve(&l->element, capacity * sizeof(cl_int));
+    buffer_reserve(&w->keep, capacity * sizeof(cl_int));
+    buffer_reserve(&w->result, capacity * 8 * real);
     if (w->layout.remembers) {
-        buffer_reserve(dev, &l->state, capacity * sizeof(cl_int));
-        buffer_reserve(dev, &l->history, capacity * (size_t)w->layout.history * real);
-        buffer_zero(dev, &l->state);
-        buffer_zero(dev, &l->history);
+        buffer_reserve(&l->state, capacity * sizeof(cl_int));
+        buffer_reserve(&l->history, capacity * (size_t)w->layout.history * real);
+        buffer_zero(&l->state);
+        buffer_zero(&l->history);
     }
     if (w->features->energy) {
-        buffer_reserve(dev, &w->ledger, capacity * CONTACT_LEDGER_WIDTH * sizeof(cl_double));
-        buffer_zero(dev, &w->ledger);
+        buffer_reserve(&w->ledger, capacity * CONTACT_LEDGER_WIDTH * sizeof(cl_double));
+        buffer_zero(&w->ledger);
     }
 }
 
-void wall_contacts_build(struct device *dev, struct wall_contacts *w, struct scan *scan,
-    const struct particles *p, int64_t step, int horizon_steps, const double low[3],
-    const double high[3])
+void wall_contacts_build(struct wall_contacts *w, struct scan *scan, const struct particles *p,
+    int64_t step, int horizon_steps, const double low[3], const double high[3])
 {
     struct wall_list older = w->old, *l = &w->now;
     w->old = w->now;
     w->now = older;
     l->n_owned = p->n_owned;
-    set_room(dev, w, step, horizon_steps, low, high);
-    buffer_reserve(dev, &l->begin, ((size_t)l->n_owned + 1) * sizeof(cl_int));
+    set_room(w, step, horizon_steps, low, high);
+    buffer_reserve(&l->begin, ((size_t)l->n_owned + 1) * sizeof(cl_int));
     launch_set_int(w->rows, "n_owned", (int)l->n_owned);
     launch_set_int(w->rows, "n_primitive", w->walls->n_primitive);
     const struct {
@@ -236,16 +235,15 @@ void wall_contacts_build(struct device *dev, struct wall_contacts *w, struct sca
     for (size_t i = 0; i < sizeof bind / sizeof *bind; i++)
         launch_bind_buffer(w->rows, bind[i].name, bind[i].buffer);
     launch_set_int(w->rows, "fill", 0);
-    launch_run(w->rows, dev->compute, l->n_owned, 0, NULL, NULL);
-    l->n = scan_total(dev, scan, &l->begin, l->n_owned);
+    launch_run(w->rows, l->n_owned);
+    l->n = scan_total(scan, &l->begin, l->n_owned);
     l->capacity = (l->n + 63) / 64 * 64 + 16;
-    reserve_contacts(dev, w);
+    reserve_contacts(w);
     launch_set_int(w->rows, "fill", 1);
-    launch_run(w->rows, dev->compute, l->n_owned, 0, NULL, NULL);
+    launch_run(w->rows, l->n_owned);
 }
 
-void wall_contacts_carry(
-    struct device *dev, struct wall_contacts *w, const struct buffer *old_index)
+void wall_contacts_carry(struct wall_contacts *w, const struct buffer *old_index)
 {
     struct wall_list *l = &w->now, *o = &w->old;
     struct launch *k = w->carry;
@@ -267,7 +265,7 @@ void wall_contacts_carry(
         {"history", &l->history}};
     for (size_t i = 0; i < sizeof bind / sizeof *bind; i++)
         launch_bind_buffer(k, bind[i].name, bind[i].buffer);
-    launch_run(k, dev->compute, l->n_owned, 0, NULL, NULL);
+    launch_run(k, l->n_owned);
 }
 
 bool wall_contacts_stale(
@@ -284,7 +282,7 @@ bool wall_contacts_stale(
     return false;
 }
 
-void wall_contacts_select(struct device *dev, struct wall_contacts *w, const struct particles *p)
+void wall_contacts_select(struct wall_contacts *w, const struct particles *p)
 {
     struct wall_list *l = &w->now;
     struct launch *k = w->keep_launch;
@@ -300,5 +298,5 @@ void wall_contacts_select(struct device *dev, struct wall_contacts *w, const str
     launch_bind_buffer_if(k, "state", &l->state);
     launch_bind_buffer_if(k, "history", &l->history);
     launch_set_int_if(k, "capacity", (int)l->capacity);
-    launch_run(k, dev->compute, l->n_owned, 0, NULL, NULL);
+    launch_run(k, l->n_owned);
 }

@@ -41,20 +41,18 @@ struct wall_contacts {
 struct wall_contacts *wall_contacts_create(struct device *dev, const struct comm *comm,
     const struct features *features, const struct scene *scene, const struct walls *walls,
     double dt, const struct program *lists, const struct program *force);
-void wall_contacts_free(struct device *dev, struct wall_contacts *w);
+void wall_contacts_free(struct wall_contacts *w);
 
 /* Brings the poses of `step` to the device; from step to step in ascending order. Collective when a
  * new batch begins. */
-void wall_contacts_set_step(struct device *dev, struct wall_contacts *w, int64_t step);
+void wall_contacts_set_step(struct wall_contacts *w, int64_t step);
 const struct wall_pose *wall_contacts_pose(const struct wall_contacts *w, int64_t step);
 
 /* Candidates for `step`, valid until an element or a wall has used up its room; `horizon_steps`:
  * for how long walls in motion get room. */
-void wall_contacts_build(struct device *dev, struct wall_contacts *w, struct scan *scan,
-    const struct particles *p, int64_t step, int horizon_steps, const double low[3],
-    const double high[3]);
-void wall_contacts_carry(
-    struct device *dev, struct wall_contacts *w, const struct buffer *old_index);
+void wall_contacts_build(struct wall_contacts *w, struct scan *scan, const struct particles *p,
+    int64_t step, int horizon_steps, const double low[3], const double high[3]);
+void wall_contacts_carry(struct wall_contacts *w, const struct buffer *old_index);
 
 /* Whether some wall has used up its room by `step`, or appears or goes then. The same on all ranks.
  * Within the batch of the last set_step. */
@@ -62,6 +60,6 @@ bool wall_contacts_stale(
     const struct wall_contacts *w, int64_t step, const double low[3], const double high[3]);
 
 /* Meshes: which candidates count in this step. */
-void wall_contacts_select(struct device *dev, struct wall_contacts *w, const struct particles *p);
+void wall_contacts_select(struct wall_contacts *w, const struct particles *p);
 
 #endif

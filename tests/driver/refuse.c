@@ -34,8 +34,8 @@ static void use(const struct comm *comm, struct device *dev, const char *what)
     if (!strcmp(what, "options")) program_build(dev, comm, "refused", "-no-such-option", sources);
     if (!strcmp(what, "source")) program_build(dev, comm, "refused", options, missing);
     struct buffer buffer;
-    buffer_init(&buffer, "everything");
-    if (!strcmp(what, "memory")) buffer_reserve(dev, &buffer, (size_t)dev->global_mem + 1);
+    buffer_init(&buffer, dev, "everything");
+    if (!strcmp(what, "memory")) buffer_reserve(&buffer, (size_t)dev->global_mem + 1);
     struct program *program = program_build(dev, comm, "test", options, sources);
     if (!strcmp(what, "kernel")) program_kernel(program, "no_such_kernel");
     struct launch *launch = launch_create(program, "scale");
@@ -45,7 +45,7 @@ static void use(const struct comm *comm, struct device *dev, const char *what)
     launch_set_int(launch, "n", 1);
     launch_bind_buffer(launch, "y", &buffer);
     if (!strcmp(what, "unbound")) launch_check(launch);
-    if (!strcmp(what, "run")) launch_run(launch, dev->compute, 1, 0, NULL, NULL);
+    if (!strcmp(what, "run")) launch_run(launch, 1);
 }
 
 int main(int argc, char **argv)

@@ -67,17 +67,17 @@ static void by_name(void **state)
         assert_int_equal(program->real_is_float, single);
         struct launch *launch = launch_create(program, "scale");
         struct buffer x, y, shift;
-        buffer_init(&x, "x");
-        buffer_init(&y, "y");
-        buffer_init(&shift, "shift");
-        buffer_reserve(dev, &x, N * size);
-        buffer_reserve(dev, &y, N * size);
-        buffer_reserve(dev, &shift, N * size);
+        buffer_init(&x, dev, "x");
+        buffer_init(&y, dev, "y");
+        buffer_init(&shift, dev, "shift");
+        buffer_reserve(&x, N * size);
+        buffer_reserve(&y, N * size);
+        buffer_reserve(&shift, N * size);
         double d[N];
         float f[N];
         for (int i = 0; i < N; i++) f[i] = (float)(d[i] = i);
-        buffer_write(dev, &x, 0, N * size, single ? (void *)f : (void *)d);
-        buffer_write(dev, &shift, 0, N * size, single ? (void *)f : (void *)d);
+        buffer_write(&x, 0, N * size, single ? (void *)f : (void *)d);
+        buffer_write(&shift, 0, N * size, single ? (void *)f : (void *)d);
 
         assert_int_equal(launch->n_arg, shifted ? 6 : 5);
         launch_bind_buffer(launch, "x", &x);
@@ -90,15 +90,15 @@ static void by_name(void **state)
         launch_set_long(launch, "bias", 1000000);
         launch_set_int(launch, "n", N);
         launch_check(launch);
-        launch_run(launch, dev->compute, N, 0, NULL, NULL);
-        buffer_read(dev, &y, 0, N * size, single ? (void *)f : (void *)d);
+        launch_run(launch, N);
+        buffer_read(&y, 0, N * size, single ? (void *)f : (void *)d);
         for (int i = 0; i < N; i++)
             assert_true((single ? (double)f[i] : d[i]) == 0.5 * i + 1e6 + (shifted ? i : 0));
 
         launch_free(launch);
-        buffer_free(dev, &x);
-        buffer_free(dev, &y);
-        buffer_free(dev, &shift);
+        buffer_free(&x);
+        buffer_free(&y);
+        buffer_free(&shift);
         program_free(program);
     }
 }
@@ -131,40 +131,40 @@ static void grows_and_swaps(void **state)
     int32_t seen[256];
     (void)state;
     assert_int_equal(launch->local, LAUNCH_LOCAL);
-    buffer_init(&a, "a");
-    buffer_init(&b, "b");
+    buffer_init(&a, dev, "a");
+    buffer_init(&b, dev, "b");
     launch_bind_buffer(launch, "seen", &a); /* no memory yet */
-    buffer_reserve(dev, &a, 256);
-    buffer_zero(dev, &a);
-    launch_run(launch, dev->compute, 64, 0, NULL, NULL);
-    buffer_read(dev, &a, 0, 256, seen);
+    buffer_reserve(&a, 256);
+    buffer_zero(&a);
+    launch_run(launch, 64);
+    buffer_read(&a, 0, 256, seen);
     assert_int_equal(seen[63], 1);
 
-    buffer_reserve(dev, &a, 1024); /* new memory */
-    buffer_zero(dev, &a);
-    launch_run(launch, dev->compute, 129, 0, NULL, NULL);
-    buffer_read(dev, &a, 0, 1024, seen);
+    buffer_reserve(&a, 1024); /* new memory */
+    buffer_zero(&a);
+    launch_run(launch, 129);
+    buffer_read(&a, 0, 1024, seen);
     for (int i = 0; i < 256; i++) assert_int_equal(seen[i], i < 192); /* padded to three groups */
 
-    buffer_reserve(dev, &b, 1024);
-    buffer_zero(dev, &b);
+    buffer_reserve(&b, 1024);
+    buffer_zero(&b);
     struct buffer swap = a;
     a = b;
     b = swap;
-    launch_run(launch, dev->compute, 256, 0, NULL, NULL);
-    buffer_read(dev, &a, 0, 1024, seen);
+    launch_run(launch, 256);
+    buffer_read(&a, 0, 1024, seen);
     for (int i = 0; i < 256; i++) assert_int_equal(seen[i], 1);
     assert_int_equal(launch->n_run, 3);
     launch_free(launch);
 
     launch = launch_create(program, "width"); /* declares its own size */
     launch_bind_buffer(launch, "local_size", &a);
-    launch_run(launch, dev->compute, 1, 0, NULL, NULL);
-    buffer_read(dev, &a, 0, 4, seen);
+    launch_run(launch, 1);
+    buffer_read(&a, 0, 4, seen);
     assert_int_equal(seen[0], 32);
     launch_free(launch);
-    buffer_free(dev, &a);
-    buffer_free(dev, &b);
+    buffer_free(&a);
+    buffer_free(&b);
     program_free(program);
 }
 
@@ -180,15 +180,15 @@ static void empty_and_counted(void **state)
     cl_event first, second;
     int32_t value[64];
     (void)state;
-    buffer_init(&seen, "seen");
-    buffer_reserve(timed, &seen, sizeof value);
-    buffer_zero(timed, &seen);
+    buffer_init(&seen, timed, "seen");
+    buffer_reserve(&seen, sizeof value);
+    buffer_zero(&seen);
     launch_bind_buffer(launch, "seen", &seen);
-    launch_run(launch, timed->compute, 64, 0, NULL, &first);
-    launch_run(launch, timed->copy, 0, 1, &first, &second);
-    launch_run(launch, timed->copy, -5, 0, NULL, NULL);
+    launch_run_on(launch, timed->compute, 64, NULL, &first);
+    launch_run_on(launch, timed->copy, 0, &first, &second);
+    launch_run_on(launch, timed->copy, -5, NULL, NULL);
     struct device_counters c = timed->counters;
-    for (int i = 0; i < 200; i++) launch_run(launch, timed->compute, 64, 0, NULL, NULL);
+    for (int i = 0; i < 200; i++) launch_run(launch, 64);
     device_finish(timed);
     assert_true(device_event_done(first) && device_event_done(second));
     clReleaseEvent(first);
@@ -196,12 +196,12 @@ static void empty_and_counted(void **state)
     assert_int_equal(timed->counters.n_launch - c.n_launch, 200);
     c.n_launch = timed->counters.n_launch;
     assert_memory_equal(&c, &timed->counters, sizeof c);
-    buffer_read(timed, &seen, 0, sizeof value, value);
+    buffer_read(&seen, 0, sizeof value, value);
     assert_int_equal(value[17], 201);
     double seconds = launch_seconds(launch);
     assert_true(seconds > 0 && seconds < 10 && seconds == launch_seconds(launch));
     launch_free(launch);
-    buffer_free(timed, &seen);
+    buffer_free(&seen);
     program_free(program);
     device_free(timed);
 }

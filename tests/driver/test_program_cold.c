@@ -27,16 +27,16 @@ int main(int argc, char **argv)
         struct launch *launch = launch_create(program, "count");
         struct buffer seen;
         int32_t value[256];
-        buffer_init(&seen, "seen");
-        buffer_reserve(dev, &seen, sizeof value);
-        buffer_zero(dev, &seen);
+        buffer_init(&seen, dev, "seen");
+        buffer_reserve(&seen, sizeof value);
+        buffer_zero(&seen);
         launch_bind_buffer(launch, "seen", &seen);
         comm_barrier(comm); /* all first launches together */
-        launch_run(launch, dev->compute, 256, 0, NULL, NULL);
-        buffer_read(dev, &seen, 0, sizeof value, value);
+        launch_run(launch, 256);
+        buffer_read(&seen, 0, sizeof value, value);
         for (int i = 0; i < 256; i++) CHECK(value[i] == 1);
         launch_free(launch);
-        buffer_free(dev, &seen);
+        buffer_free(&seen);
         program_free(program);
     }
     device_free(dev);

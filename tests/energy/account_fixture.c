@@ -91,8 +91,8 @@ void account_write_elements(struct sim *s, const struct account_state *a)
         gid[local[i]] = i;
     }
     run->particles->n_owned = n_owned;
-    buffer_write(s->dev, &run->particles->field[FIELD_STATE].now, 0, N_ELEMENT * bytes, state);
-    buffer_write(s->dev, &run->particles->field[FIELD_GID].now, 0, N_ELEMENT * sizeof *gid, gid);
+    buffer_write(&run->particles->field[FIELD_STATE].now, 0, N_ELEMENT * bytes, state);
+    buffer_write(&run->particles->field[FIELD_GID].now, 0, N_ELEMENT * sizeof *gid, gid);
     free(state);
     free(gid);
     free(local);
@@ -127,14 +127,13 @@ static void write_pairs(struct sim *s, const struct account_state *a, int rank, 
         for (int k = 0; k < PAIR_GAP; k++) i[n++] = 0;
     }
     l->n_boundary = l->n_mine = n - l->first_boundary;
-    buffer_reserve(s->dev, &l->pair_i, (size_t)l->capacity * sizeof *i);
-    buffer_reserve(s->dev, &l->pair_j, (size_t)l->capacity * sizeof *j);
-    buffer_reserve(
-        s->dev, &run->pairs->ledger, (size_t)l->capacity * LEDGER_WIDTH * sizeof *ledger);
-    buffer_write(s->dev, &l->pair_i, 0, (size_t)l->capacity * sizeof *i, i);
-    buffer_write(s->dev, &l->pair_j, 0, (size_t)l->capacity * sizeof *j, j);
-    buffer_write(s->dev, &run->pairs->ledger, 0,
-        (size_t)l->capacity * LEDGER_WIDTH * sizeof *ledger, ledger);
+    buffer_reserve(&l->pair_i, (size_t)l->capacity * sizeof *i);
+    buffer_reserve(&l->pair_j, (size_t)l->capacity * sizeof *j);
+    buffer_reserve(&run->pairs->ledger, (size_t)l->capacity * LEDGER_WIDTH * sizeof *ledger);
+    buffer_write(&l->pair_i, 0, (size_t)l->capacity * sizeof *i, i);
+    buffer_write(&l->pair_j, 0, (size_t)l->capacity * sizeof *j, j);
+    buffer_write(
+        &run->pairs->ledger, 0, (size_t)l->capacity * LEDGER_WIDTH * sizeof *ledger, ledger);
     free(i);
     free(j);
     free(ledger);
@@ -158,14 +157,14 @@ static void write_walls(struct sim *s, const struct account_state *a, int rank, 
         for (size_t k = 0; k < LEDGER_WIDTH; k++)
             ledger[k * capacity + (size_t)local[i]] = a->at_wall[i][k];
     }
-    buffer_reserve(s->dev, &w->now.candidate, capacity * sizeof *candidate);
-    buffer_reserve(s->dev, &w->now.element, capacity * sizeof *element);
-    buffer_reserve(s->dev, &w->ledger, capacity * LEDGER_WIDTH * sizeof *ledger);
-    buffer_reserve(s->dev, &w->wall_of, sizeof wall_of);
-    buffer_write(s->dev, &w->now.candidate, 0, capacity * sizeof *candidate, candidate);
-    buffer_write(s->dev, &w->now.element, 0, capacity * sizeof *element, element);
-    buffer_write(s->dev, &w->ledger, 0, capacity * LEDGER_WIDTH * sizeof *ledger, ledger);
-    buffer_write(s->dev, &w->wall_of, 0, sizeof wall_of, wall_of);
+    buffer_reserve(&w->now.candidate, capacity * sizeof *candidate);
+    buffer_reserve(&w->now.element, capacity * sizeof *element);
+    buffer_reserve(&w->ledger, capacity * LEDGER_WIDTH * sizeof *ledger);
+    buffer_reserve(&w->wall_of, sizeof wall_of);
+    buffer_write(&w->now.candidate, 0, capacity * sizeof *candidate, candidate);
+    buffer_write(&w->now.element, 0, capacity * sizeof *element, element);
+    buffer_write(&w->ledger, 0, capacity * LEDGER_WIDTH * sizeof *ledger, ledger);
+    buffer_write(&w->wall_of, 0, sizeof wall_of, wall_of);
     free(candidate);
     free(element);
     free(ledger);
@@ -181,8 +180,8 @@ static void init_buffers(struct sim *s)
         &run->pairs->ledger, &run->wall_contacts->now.candidate, &run->wall_contacts->now.element,
         &run->wall_contacts->ledger, &run->wall_contacts->wall_of};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
-        buffer_init(all[k], "made up");
-        buffer_reserve(s->dev, all[k], N_ELEMENT * 96);
+        buffer_init(all[k], s->dev, "made up");
+        buffer_reserve(all[k], N_ELEMENT * 96);
     }
 }
 
@@ -238,13 +237,13 @@ void account_leave(struct sim *s, const struct account_state *a)
 void account_free(struct sim *s)
 {
     struct particle_run *run = s->particle;
-    energy_free(s->dev, run->energy);
+    energy_free(run->energy);
     struct wall_contacts *w = run->wall_contacts;
     struct buffer *all[] = {&run->particles->field[FIELD_STATE].now,
         &run->particles->field[FIELD_STATE].spare, &run->particles->field[FIELD_GID].now,
         &run->particles->field[FIELD_GID].spare, &run->pairs->now.pair_i, &run->pairs->now.pair_j,
         &run->pairs->ledger, &w->now.candidate, &w->now.element, &w->ledger, &w->wall_of};
-    for (size_t k = 0; k < sizeof all / sizeof *all; k++) buffer_free(s->dev, all[k]);
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) buffer_free(all[k]);
     free((void *)(uintptr_t)w->walls);
     free(w->poses);
     free(w->room_host);

@@ -141,9 +141,9 @@ static void check_totals(void)
     struct sim *s = dealt(&f);
     size_t bytes = (size_t)s->particle->pairs->now.capacity * LEDGER_WIDTH * sizeof(double);
     double *ledger = fail_alloc(bytes);
-    buffer_read(dev, &s->particle->pairs->ledger, 0, bytes, ledger);
+    buffer_read(&s->particle->pairs->ledger, 0, bytes, ledger);
     for (int k = 0; k < 3; k++) {
-        buffer_write(dev, &s->particle->pairs->ledger, 0, bytes, ledger);
+        buffer_write(&s->particle->pairs->ledger, 0, bytes, ledger);
         energy_collect(s);
     }
     energy_now(s, &e);

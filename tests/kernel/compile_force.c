@@ -36,9 +36,9 @@ static void set_arguments(struct device *dev, struct launch *launch, struct buff
     for (int i = 0; i < launch->n_arg; i++) {
         const char *name = launch->arg[i].name;
         if (launch->arg[i].is_global) {
-            buffer_init(&zeros[i], "zeros");
-            buffer_reserve(dev, &zeros[i], BYTES);
-            buffer_zero(dev, &zeros[i]);
+            buffer_init(&zeros[i], dev, "zeros");
+            buffer_reserve(&zeros[i], BYTES);
+            buffer_zero(&zeros[i]);
             launch_bind_buffer(launch, name, &zeros[i]);
         } else if (!strcmp(launch->arg[i].type, "int")) {
             launch_set_int(launch, name, !strcmp(name, "first") ? 0 : N);
@@ -70,9 +70,9 @@ int main(int argc, char **argv)
     struct launch *launch = launch_create(program, argv[1]);
     launch_set_batch(launch, BATCH);
     set_arguments(dev, launch, zeros);
-    launch_run(launch, dev->compute, N, 0, NULL, NULL);
+    launch_run(launch, N);
     device_finish(dev);
-    for (int i = 0; i < MOST; i++) buffer_free(dev, &zeros[i]);
+    for (int i = 0; i < MOST; i++) buffer_free(&zeros[i]);
     launch_free(launch);
     program_free(program);
     free(options);

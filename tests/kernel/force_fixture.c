@@ -123,7 +123,7 @@ static void check_law(bool one_lane)
     reader_close(&run->reader);
     launch_free(run->launch);
     program_free(program);
-    for (int b = 0; b < FORCE_BUFFERS; b++) buffer_free(run->dev, &run->buffer[b]);
+    for (int b = 0; b < FORCE_BUFFERS; b++) buffer_free(&run->buffer[b]);
     device_free(run->dev);
     free(run);
 }

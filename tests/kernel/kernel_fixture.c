@@ -27,9 +27,9 @@ struct program *fixture_program(struct device *dev, const struct features *featu
 void fixture_buffer(
     struct device *dev, struct buffer *buffer, const char *name, size_t bytes, const void *data)
 {
-    buffer_init(buffer, name);
-    buffer_reserve(dev, buffer, bytes);
-    if (data) buffer_write(dev, buffer, 0, bytes, data);
+    buffer_init(buffer, dev, name);
+    buffer_reserve(buffer, bytes);
+    if (data) buffer_write(buffer, 0, bytes, data);
 }
 
 void fixture_bind(struct device *dev, struct launch *launch, struct buffer *buffer,

@@ -21,10 +21,10 @@ void lists_open(struct lists *l)
 
 void lists_close(struct lists *l)
 {
-    pairs_free(l->dev, l->pairs);
-    particles_free(l->dev, l->particles);
-    cells_free(l->dev, l->cells);
-    scan_free(l->dev, l->scan);
+    pairs_free(l->pairs);
+    particles_free(l->particles);
+    cells_free(l->cells);
+    scan_free(l->scan);
     program_free(l->force);
     program_free(l->program);
     device_free(l->dev);
@@ -58,18 +58,18 @@ void lists_build(struct lists *l, const struct crowd *c)
     size_t n = (size_t)c->n_all;
     p->n_owned = c->n_owned;
     p->n_ghost = c->n_all - c->n_owned;
-    particles_reserve(l->dev, p, &l->features, c->n_all, 0);
-    buffer_write(l->dev, &p->field[FIELD_STATE].now, 0, n * sizeof *c->element, c->element);
-    buffer_write(l->dev, &p->field[FIELD_GID].now, 0, n * sizeof *c->gid, c->gid);
-    buffer_write(l->dev, &p->reach, 0, n * sizeof *c->reach, c->reach);
-    struct cells_bounds bounds = cells_bounds(l->dev, l->cells, p, c->n_all);
-    cells_sort(l->dev, l->cells, l->scan, p, c->n_all, &bounds);
-    pairs_build(l->dev, l->pairs, l->cells, l->scan, p);
+    particles_reserve(p, &l->features, c->n_all, 0);
+    buffer_write(&p->field[FIELD_STATE].now, 0, n * sizeof *c->element, c->element);
+    buffer_write(&p->field[FIELD_GID].now, 0, n * sizeof *c->gid, c->gid);
+    buffer_write(&p->reach, 0, n * sizeof *c->reach, c->reach);
+    struct cells_bounds bounds = cells_bounds(l->cells, p, c->n_all);
+    cells_sort(l->cells, l->scan, p, c->n_all, &bounds);
+    pairs_build(l->pairs, l->cells, l->scan, p);
 }
 
-int *lists_ints(const struct lists *l, const struct buffer *buffer, int64_t n)
+int *lists_ints(const struct buffer *buffer, int64_t n)
 {
     int *value = fail_alloc((size_t)n * sizeof *value);
-    buffer_read(l->dev, buffer, 0, (size_t)n * sizeof *value, value);
+    buffer_read(buffer, 0, (size_t)n * sizeof *value, value);
     return value;
 }

@@ -36,6 +36,6 @@ bool crowd_meet(const struct crowd *c, int a, int b);
 /* To the device; sorts into cells; builds rows and pairs. What was `now` becomes `old`. */
 void lists_build(struct lists *l, const struct crowd *c);
 /* The first n ints of a buffer; the caller frees. */
-int *lists_ints(const struct lists *l, const struct buffer *buffer, int64_t n);
+int *lists_ints(const struct buffer *buffer, int64_t n);
 
 #endif

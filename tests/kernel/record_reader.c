@@ -78,13 +78,13 @@ void reader_read(struct reader *r, struct buffer *pair_result, int n_pair,
     launch_bind_buffer_if(
         r->gather, "wall_result", wall_result ? wall_result : &r->buffer[NOTHING]);
     launch_set_int(r->gather, "n_owned", (int)n);
-    launch_run(r->gather, r->dev->compute, (int64_t)n, 0, NULL, NULL);
+    launch_run(r->gather, (int64_t)n);
     for (int which = 0; which < 2; which++) {
-        buffer_read(r->dev, &r->buffer[which ? TORQUE : FORCE], 0, 4 * n * sizeof *vector, vector);
+        buffer_read(&r->buffer[which ? TORQUE : FORCE], 0, 4 * n * sizeof *vector, vector);
         for (size_t e = 0; e < n; e++)
             memcpy(which ? out[e].torque : out[e].force, vector + 4 * e, sizeof out[e].force);
     }
-    for (int b = 0; b < N_BUFFER; b++) buffer_free(r->dev, &r->buffer[b]);
+    for (int b = 0; b < N_BUFFER; b++) buffer_free(&r->buffer[b]);
     free(element);
     free(vector);
 }

@@ -70,9 +70,9 @@ static void run_rule(struct state *s)
     fixture_bind(lists.dev, k, &s->buffer[0], "segment", sizeof s->segment, s->segment);
     fixture_bind(lists.dev, k, &s->buffer[1], "copy", (size_t)s->n * sizeof(cl_int2), NULL);
     fixture_bind(lists.dev, k, &s->buffer[2], "theirs", ((size_t)s->n + 1) * sizeof(int), NULL);
-    launch_run(k, lists.dev->compute, s->n, 0, NULL, NULL);
+    launch_run(k, s->n);
     launch_free(k);
-    int *theirs = lists_ints(&lists, &s->buffer[2], s->n);
+    int *theirs = lists_ints(&s->buffer[2], s->n);
     for (int p = 0; p < s->n; p++) assert_int_equal(theirs[p], s->theirs[s->first + p]);
     free(theirs);
 }
@@ -82,7 +82,7 @@ static void run_order(struct state *s)
     struct pair_list *l = &lists.pairs->now;
     struct launch *place = launch_create(program, "assign_place"),
                   *link = launch_create(program, "assign_link");
-    s->n_mine = s->n - (int)scan_total(lists.dev, lists.scan, &s->buffer[2], s->n);
+    s->n_mine = s->n - (int)scan_total(lists.scan, &s->buffer[2], s->n);
     launch_set_int(place, "n", s->n);
     launch_set_int(place, "first", s->first);
     launch_set_int(place, "n_mine", s->n_mine);
@@ -91,13 +91,13 @@ static void run_order(struct state *s)
     launch_bind_buffer(place, "pair_i", &l->pair_i);
     launch_bind_buffer(place, "pair_j", &l->pair_j);
     fixture_bind(lists.dev, place, &s->buffer[3], "place", (size_t)s->n * sizeof(int), NULL);
-    launch_run(place, lists.dev->compute, s->n, 0, NULL, NULL);
+    launch_run(place, s->n);
     launch_set_int(link, "n_incidence", (int)l->n_incidence);
     launch_set_int(link, "n", s->n);
     launch_set_int(link, "first", s->first);
     launch_bind_buffer(link, "place", &s->buffer[3]);
     launch_bind_buffer(link, "incidence", &l->incidence);
-    launch_run(link, lists.dev->compute, l->n_incidence, 0, NULL, NULL);
+    launch_run(link, l->n_incidence);
     launch_free(place);
     launch_free(link);
 }
@@ -107,15 +107,14 @@ static void run_order(struct state *s)
 static void check_order(const struct state *s, const int *incidence_before)
 {
     const struct pair_list *l = &lists.pairs->now;
-    int *i = lists_ints(&lists, &l->pair_i, s->first + s->n),
-        *j = lists_ints(&lists, &l->pair_j, s->first + s->n),
+    int *i = lists_ints(&l->pair_i, s->first + s->n), *j = lists_ints(&l->pair_j, s->first + s->n),
         at[2] = {s->first, s->first + s->n_mine};
     for (int p = s->first; p < s->first + s->n; p++) {
         int to = at[s->theirs[p]]++;
         assert_true(i[to] == s->i[p] && j[to] == s->j[p]);
     }
     assert_true(at[0] == s->first + s->n_mine && at[1] == s->first + s->n);
-    int *incidence = lists_ints(&lists, &l->incidence, l->n_incidence);
+    int *incidence = lists_ints(&l->incidence, l->n_incidence);
     for (int k = 0; k < l->n_incidence; k++) {
         int before = incidence_before[k] / 2, now = incidence[k] / 2;
         assert_int_equal(incidence[k] % 2, incidence_before[k] % 2);
@@ -133,8 +132,8 @@ static void check_list(
     struct state *s, const int *element, const int *begin, const cl_int2 *range, int theirs)
 {
     const struct pair_list *l = &lists.pairs->now;
-    int n = begin[N_SEGMENT], at = 0, *i = lists_ints(&lists, &l->pair_i, s->first + s->n),
-        *j = lists_ints(&lists, &l->pair_j, s->first + s->n);
+    int n = begin[N_SEGMENT], at = 0, *i = lists_ints(&l->pair_i, s->first + s->n),
+        *j = lists_ints(&l->pair_j, s->first + s->n);
     struct launch *k = launch_create(program, "assign_list");
     struct buffer buffer[5];
     fixture_bind(lists.dev, k, &buffer[0], "segment", (N_SEGMENT + 1) * sizeof *begin, begin);
@@ -157,11 +156,10 @@ static void check_list(
         launch_set_int(k, set[m].name, set[m].value);
     for (int fill = 0; fill < 2; fill++) {
         launch_set_int(k, "fill", fill);
-        launch_run(k, lists.dev->compute, n, 0, NULL, NULL);
-        if (!fill) scan_total(lists.dev, lists.scan, &buffer[3], n);
+        launch_run(k, n);
+        if (!fill) scan_total(lists.scan, &buffer[3], n);
     }
-    int *list = lists_ints(&lists, &buffer[4], s->n),
-        *count = lists_ints(&lists, &buffer[3], n + 1);
+    int *list = lists_ints(&buffer[4], s->n), *count = lists_ints(&buffer[3], n + 1);
     for (int m = 0; m < n; m++) {
         int segment = 0, e = element[m];
         while (m >= begin[segment + 1]) segment++;
@@ -183,7 +181,7 @@ static void check_list(
                         (p >= s->first + s->n_mine) == theirs;
         }
     assert_int_equal(at, n_wanted);
-    for (int b = 0; b < 5; b++) buffer_free(lists.dev, &buffer[b]);
+    for (int b = 0; b < 5; b++) buffer_free(&buffer[b]);
     launch_free(k);
     void *own[] = {i, j, list, count};
     for (int b = 0; b < 4; b++) free(own[b]);
@@ -217,18 +215,18 @@ static void check(int n_owned, double reach, int least)
     lists_build(&lists, &s.c);
     s.n = (int)l->n_boundary;
     s.first = (int)l->first_boundary;
-    s.i = lists_ints(&lists, &l->pair_i, s.first + s.n);
-    s.j = lists_ints(&lists, &l->pair_j, s.first + s.n);
+    s.i = lists_ints(&l->pair_i, s.first + s.n);
+    s.j = lists_ints(&l->pair_j, s.first + s.n);
     s.theirs = fail_alloc((size_t)(s.first + s.n) * sizeof *s.theirs);
     for (int k = 0; k < N_SEGMENT; k++) s.segment[k + 1] = s.segment[k] + n_of_segment[k];
     for (int p = s.first; p < s.first + s.n; p++) s.theirs[p] = is_theirs(&s, s.i[p], s.j[p]);
-    int *incidence = lists_ints(&lists, &l->incidence, l->n_incidence);
+    int *incidence = lists_ints(&l->incidence, l->n_incidence);
     run_rule(&s);
     run_order(&s);
     assert_true(s.n_mine >= least && s.n - s.n_mine >= least);
     check_order(&s, incidence);
     check_lists(&s);
-    for (int b = 0; b < 4; b++) buffer_free(lists.dev, &s.buffer[b]);
+    for (int b = 0; b < 4; b++) buffer_free(&s.buffer[b]);
     void *own[] = {s.i, s.j, s.theirs, incidence};
     for (int b = 0; b < 4; b++) free(own[b]);
     crowd_free(&s.c);

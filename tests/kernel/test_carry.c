@@ -51,7 +51,7 @@ static void write_histories(const struct crowd *c)
     struct pair_list *l = &lists.pairs->now;
     int width = lists.pairs->layout.history;
     int64_t end = l->first_boundary + l->n_boundary;
-    int *i = lists_ints(&lists, &l->pair_i, end), *j = lists_ints(&lists, &l->pair_j, end),
+    int *i = lists_ints(&l->pair_i, end), *j = lists_ints(&l->pair_j, end),
         *state = fail_alloc((size_t)l->capacity * sizeof *state);
     real *history = fail_alloc((size_t)(l->capacity * width) * sizeof *history);
     for (int64_t p = 0; p < end; p++) {
@@ -60,9 +60,8 @@ static void write_histories(const struct crowd *c)
         for (int k = 0; k < width; k++)
             history[k * l->capacity + p] = history_of(c->gid[i[p]], c->gid[j[p]], k);
     }
-    buffer_write(lists.dev, &l->state, 0, (size_t)l->capacity * sizeof *state, state);
-    buffer_write(
-        lists.dev, &l->history, 0, (size_t)(l->capacity * width) * sizeof *history, history);
+    buffer_write(&l->state, 0, (size_t)l->capacity * sizeof *state, state);
+    buffer_write(&l->history, 0, (size_t)(l->capacity * width) * sizeof *history, history);
     free(i);
     free(j);
     free(state);
@@ -112,17 +111,16 @@ static void migrate(const struct crowd *c, const int *place, struct buffer *old_
     for (int e = 0; e < N; e++)
         if (place[e] >= 0) from[place[e]] = e < N_LEAVE ? N + e : e;
     fixture_buffer(lists.dev, &leaving, "leaving", sizeof index, index);
-    owners_pick_contacts(
-        lists.dev, &contacts, lists.scan, &leaving, N_LEAVE, lists.pairs, NULL, real_bytes);
+    owners_pick_contacts(&contacts, lists.scan, &leaving, N_LEAVE, lists.pairs, NULL, real_bytes);
     for (int e = 0; e < c->n_owned; e++)
         if (from[e] < 0) from[e] = N + n++;
     contacts.begin = fail_realloc(contacts.begin, ((size_t)n + 1) * sizeof *contacts.begin);
     /* new ones have none */
     for (int k = N_LEAVE + 1; k <= n; k++) contacts.begin[k] = contacts.begin[N_LEAVE];
-    owners_store_contacts(lists.dev, &lists.pairs->arrivals, &contacts, n, sizeof(int64_t),
+    owners_store_contacts(&lists.pairs->arrivals, &contacts, n, sizeof(int64_t),
         lists.pairs->layout.history, real_bytes);
     fixture_buffer(lists.dev, old_index, "old_index", (size_t)c->n_all * sizeof *from, from);
-    buffer_free(lists.dev, &leaving);
+    buffer_free(&leaving);
     free(contacts.begin);
     free(contacts.key);
     free(contacts.state);
@@ -134,12 +132,12 @@ static void check_histories(const struct crowd *old, const struct crowd *c, cons
 {
     const struct pair_list *l = &lists.pairs->now;
     int64_t end = l->first_boundary + l->n_boundary, n_kept = 0, n_new = 0;
-    int *i = lists_ints(&lists, &l->pair_i, end), *j = lists_ints(&lists, &l->pair_j, end),
-        *state = lists_ints(&lists, &l->state, l->capacity);
+    int *i = lists_ints(&l->pair_i, end), *j = lists_ints(&l->pair_j, end),
+        *state = lists_ints(&l->state, l->capacity);
     int *before = fail_alloc((size_t)c->n_all * sizeof *before);
     real *history =
         fail_alloc((size_t)(l->capacity * lists.pairs->layout.history) * sizeof *history);
-    buffer_read(lists.dev, &l->history, 0,
+    buffer_read(&l->history, 0,
         (size_t)(l->capacity * lists.pairs->layout.history) * sizeof *history, history);
     for (int e = 0; e < c->n_all; e++) before[e] = -1;
     for (int e = 0; e < old->n_all; e++)
@@ -177,9 +175,9 @@ static void histories_follow_their_pairs(void **unused)
         struct crowd c = next(&old, place);
         migrate(&c, place, &old_index); /* before the build, as owners_move does */
         lists_build(&lists, &c);
-        pairs_carry(lists.dev, lists.pairs, lists.particles, &old_index);
+        pairs_carry(lists.pairs, lists.particles, &old_index);
         check_histories(&old, &c, place);
-        buffer_free(lists.dev, &old_index);
+        buffer_free(&old_index);
         crowd_free(&old);
         crowd_free(&c);
     }
@@ -203,8 +201,7 @@ static void leaving_contacts(void **unused)
     lists_build(&lists, &c);
     write_histories(&c);
     fixture_buffer(lists.dev, &leaving, "leaving", sizeof index, index);
-    owners_pick_contacts(
-        lists.dev, &contacts, lists.scan, &leaving, 100, lists.pairs, NULL, sizeof(real));
+    owners_pick_contacts(&contacts, lists.scan, &leaving, 100, lists.pairs, NULL, sizeof(real));
     for (int k = 0; k < 100; k++) {
         int n = 0;
         for (int b = 0; b < c.n_all; b++)
@@ -224,7 +221,7 @@ static void leaving_contacts(void **unused)
         }
     }
     assert_true(at > 300);
-    buffer_free(lists.dev, &leaving);
+    buffer_free(&leaving);
     free(contacts.begin);
     free(contacts.key);
     free(contacts.state);

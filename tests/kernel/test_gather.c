@@ -158,14 +158,14 @@ static struct test *step(const struct test *from, int how)
     memcpy(t, from, sizeof *t);
     to_device(t);
     launch_set_int(gather, "observe", how > 0);
-    launch_run(gather, dev->compute, N, 0, NULL, NULL);
-    if (how == 2) launch_run(kick_drift, dev->compute, N, 0, NULL, NULL);
-    buffer_read(dev, &t->buffer[POSITION], 0, sizeof t->element, t->element);
-    buffer_read(dev, &t->buffer[ORIENTATION], 0, sizeof t->orientation, t->orientation);
-    buffer_read(dev, &t->buffer[FORCE], 0, sizeof t->force, t->force);
-    buffer_read(dev, &t->buffer[TORQUE], 0, sizeof t->torque, t->torque);
-    buffer_read(dev, &t->buffer[FLAGS], 0, sizeof t->flags, t->flags);
-    for (int b = 0; b < N_BUFFER; b++) buffer_free(dev, &t->buffer[b]);
+    launch_run(gather, N);
+    if (how == 2) launch_run(kick_drift, N);
+    buffer_read(&t->buffer[POSITION], 0, sizeof t->element, t->element);
+    buffer_read(&t->buffer[ORIENTATION], 0, sizeof t->orientation, t->orientation);
+    buffer_read(&t->buffer[FORCE], 0, sizeof t->force, t->force);
+    buffer_read(&t->buffer[TORQUE], 0, sizeof t->torque, t->torque);
+    buffer_read(&t->buffer[FLAGS], 0, sizeof t->flags, t->flags);
+    for (int b = 0; b < N_BUFFER; b++) buffer_free(&t->buffer[b]);
     return t;
 }
 
@@ -179,8 +179,8 @@ static void read_records(const struct features *features)
     reader_open(&reader, dev, features);
     reader_read(&reader, &pair, N_PAIR, &wall, N_AT_WALL, reading);
     reader_close(&reader);
-    buffer_free(dev, &pair);
-    buffer_free(dev, &wall);
+    buffer_free(&pair);
+    buffer_free(&wall);
 }
 
 static void add(real f[3], real torque[3], const struct reading *r)

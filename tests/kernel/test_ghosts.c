@@ -100,8 +100,8 @@ static void check_ghosts(
     launch_set_int(k, "n", N);
     launch_set_int(k, "rank", rank);
     launch_set_real(k, "far_reach", far_reach);
-    launch_run(k, lists.dev->compute, N, 0, NULL, NULL);
-    int *taken = lists_ints(&lists, at, N);
+    launch_run(k, N);
+    int *taken = lists_ints(at, N);
     for (int e = 0; e < N; e++) {
         double unused, along, reach = (double)c.reach[e] + far_reach,
                               from_box = distance_to(c.element[e].x, low, high, &unused);
@@ -125,7 +125,7 @@ static void check_ghosts(
         if (from_box > 1.001 * reach || !is_near) assert_int_equal(taken[e], 0);
         *n_taken += taken[e];
     }
-    for (int b = 0; b < 3; b++) buffer_free(lists.dev, &buffer[b]);
+    for (int b = 0; b < 3; b++) buffer_free(&buffer[b]);
     free(taken);
     crowd_free(&c);
 }
@@ -140,7 +140,7 @@ static void ghosts_within_reach_of_box_and_leaves(void **state)
     for (int box = 0; box < 40; box++)
         check_ghosts(k, &at, box < 4 ? 1 : TREE_LEAVES, box % 2 ? 0.03 : 0.2, &n_taken);
     assert_true(n_taken > N / 2 && n_taken < 39 * N);
-    buffer_free(lists.dev, &at);
+    buffer_free(&at);
     launch_free(k);
 }
 

@@ -153,14 +153,14 @@ static void run(struct test *t, real *result)
     static const int range[2][2] = {{0, N_INTERIOR}, {FIRST_BOUNDARY, N_PAIR}};
     memset(result, 0x5a, RESULT_WIDTH * CAPACITY * sizeof *result);
     memset(result + RESULT_WIDTH * CAPACITY, 0, RESULT_WIDTH * sizeof *result); /* for the reader */
-    buffer_write(f->dev, &f->buffer[7], 0, RESULT_WIDTH * (CAPACITY + 1) * sizeof *result, result);
-    buffer_write(f->dev, &f->buffer[0], 0, sizeof t->element, t->element);
+    buffer_write(&f->buffer[7], 0, RESULT_WIDTH * (CAPACITY + 1) * sizeof *result, result);
+    buffer_write(&f->buffer[0], 0, sizeof t->element, t->element);
     for (int k = 0; k < 2; k++) {
         launch_set_int(f->launch, "first", range[k][0]);
         launch_set_int(f->launch, "end", range[k][1]);
-        launch_run(f->launch, f->dev->compute, range[k][1] - range[k][0], 0, NULL, NULL);
+        launch_run(f->launch, range[k][1] - range[k][0]);
     }
-    buffer_read(f->dev, &f->buffer[7], 0, RESULT_WIDTH * CAPACITY * sizeof *result, result);
+    buffer_read(&f->buffer[7], 0, RESULT_WIDTH * CAPACITY * sizeof *result, result);
 }
 
 /* What lies between and behind the pairs is nobody's to touch. */
@@ -179,9 +179,9 @@ static void check(struct force_run *f)
     struct test *t = (struct test *)f;
     run(t, result);
     reader_read(&f->reader, &f->buffer[7], CAPACITY, NULL, 0, reading);
-    buffer_read(f->dev, &f->buffer[3], 0, sizeof state, state);
-    buffer_read(f->dev, &f->buffer[4], 0, sizeof history, history);
-    buffer_read(f->dev, &f->buffer[5], 0, sizeof ledger, ledger);
+    buffer_read(&f->buffer[3], 0, sizeof state, state);
+    buffer_read(&f->buffer[4], 0, sizeof history, history);
+    buffer_read(&f->buffer[5], 0, sizeof ledger, ledger);
     for (int p = 0; p < CAPACITY; p++) {
         if (p >= N_PAIR || !is_pair(p)) {
             check_gap(result, p);

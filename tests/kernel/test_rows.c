@@ -45,9 +45,9 @@ static struct crowd make(int n_owned, int n_all, double box, double small, doubl
 static void check_cells(const struct crowd *c)
 {
     int64_t n_cell = lists.cells->n_cell;
-    int *begin = lists_ints(&lists, &lists.cells->begin, n_cell + 1),
-        *member = lists_ints(&lists, &lists.cells->member, c->n_all);
-    int *key = lists_ints(&lists, &lists.cells->key, c->n_all),
+    int *begin = lists_ints(&lists.cells->begin, n_cell + 1),
+        *member = lists_ints(&lists.cells->member, c->n_all);
+    int *key = lists_ints(&lists.cells->key, c->n_all),
         *seen = fail_alloc((size_t)c->n_all * sizeof *seen);
     assert_int_equal(begin[0], 0);
     assert_int_equal(begin[n_cell], c->n_all);
@@ -68,11 +68,10 @@ static void check_cells(const struct crowd *c)
 static int64_t check_rows(const struct crowd *c)
 {
     const struct pair_list *l = &lists.pairs->now;
-    int *begin = lists_ints(&lists, &l->row_begin, c->n_all + 1),
-        *row = lists_ints(&lists, &l->row, l->n_row);
+    int *begin = lists_ints(&l->row_begin, c->n_all + 1), *row = lists_ints(&l->row, l->n_row);
     int64_t *gid = fail_alloc((size_t)l->n_row * sizeof *gid);
     char *is_in = fail_alloc((size_t)c->n_all);
-    buffer_read(lists.dev, &l->row_gid, 0, (size_t)l->n_row * sizeof *gid, gid);
+    buffer_read(&l->row_gid, 0, (size_t)l->n_row * sizeof *gid, gid);
     assert_int_equal(begin[c->n_all], l->n_row);
     for (int e = 0; e < c->n_all; e++) {
         memset(is_in, 0, (size_t)c->n_all);
@@ -101,8 +100,8 @@ static void check_pairs(const struct crowd *c, int64_t n_row)
 {
     const struct pair_list *l = &lists.pairs->now;
     int64_t end = l->first_boundary + l->n_boundary;
-    int *i = lists_ints(&lists, &l->pair_i, end), *j = lists_ints(&lists, &l->pair_j, end);
-    int *up = lists_ints(&lists, &l->up_begin, c->n_all);
+    int *i = lists_ints(&l->pair_i, end), *j = lists_ints(&l->pair_j, end);
+    int *up = lists_ints(&l->up_begin, c->n_all);
     int64_t n = 0;
     assert_int_equal(2 * (l->n_interior + l->n_boundary), n_row);
     assert_true(l->first_boundary % 64 == 0 && l->first_boundary >= l->n_interior &&
@@ -130,7 +129,7 @@ static void check_blank(int64_t pair)
     size_t bytes = (size_t)lists.pairs->layout.result * sizeof(real);
     unsigned char *record = fail_alloc(bytes);
     memset(record, 0x5a, bytes);
-    buffer_read(lists.dev, &lists.pairs->result, (size_t)pair * bytes, bytes, record);
+    buffer_read(&lists.pairs->result, (size_t)pair * bytes, bytes, record);
     for (size_t k = 0; k < bytes; k++) assert_int_equal(record[k], 0);
     free(record);
 }
@@ -141,9 +140,9 @@ static void check_links(const struct crowd *c)
 {
     const struct pair_list *l = &lists.pairs->now;
     int64_t end = l->first_boundary + l->n_boundary;
-    int *i = lists_ints(&lists, &l->pair_i, end), *j = lists_ints(&lists, &l->pair_j, end);
-    int *begin = lists_ints(&lists, &l->incidence_begin, c->n_owned + 1),
-        *incidence = lists_ints(&lists, &l->incidence, l->n_incidence);
+    int *i = lists_ints(&l->pair_i, end), *j = lists_ints(&l->pair_j, end);
+    int *begin = lists_ints(&l->incidence_begin, c->n_owned + 1),
+        *incidence = lists_ints(&l->incidence, l->n_incidence);
     assert_int_equal(begin[c->n_owned], l->n_incidence);
     for (int e = 0; e < c->n_owned; e++) {
         int n = 0, n_padded = begin[e + 1] - begin[e];

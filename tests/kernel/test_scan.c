@@ -15,15 +15,15 @@ static void check(int64_t n, int largest)
     struct buffer data;
     for (int64_t i = 0; i < n + 2; i++) value[i] = (cl_int)scratch_random(&seed, 0, largest + 1);
     fixture_buffer(dev, &data, "data", ((size_t)n + 2) * sizeof *value, value);
-    int64_t total = scan_total(dev, scan, &data, n), sum = 0;
-    buffer_read(dev, &data, 0, ((size_t)n + 2) * sizeof *got, got);
+    int64_t total = scan_total(scan, &data, n), sum = 0;
+    buffer_read(&data, 0, ((size_t)n + 2) * sizeof *got, got);
     for (int64_t i = 0; i <= n; i++) {
         assert_int_equal(got[i], sum);
         if (i < n) sum += value[i];
     }
     assert_int_equal(total, sum);
     assert_int_equal(got[n + 1], value[n + 1]); /* what lies behind is left alone */
-    buffer_free(dev, &data);
+    buffer_free(&data);
     free(value);
     free(got);
 }
@@ -47,7 +47,7 @@ int main(void)
     struct program *program = fixture_program(dev, &features, FEATURES_BODY, sources);
     scan = scan_create(dev, program);
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    scan_free(dev, scan);
+    scan_free(scan);
     program_free(program);
     device_free(dev);
     return failed;

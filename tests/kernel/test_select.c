@@ -14,17 +14,16 @@ static void records_follow_an_index(void **state)
     for (int e = 0; e < N; e++) from[e] = (int)tree_random(0, N); /* any, some twice */
     fixture_buffer(lists.dev, &index, "index", sizeof from, from);
     tree_upload(&lists, &c);
-    particles_reserve_spare(lists.dev, lists.particles, N);
-    particles_permute(lists.dev, lists.particles, &index, N);
+    particles_reserve_spare(lists.particles, N);
+    particles_permute(lists.particles, &index, N);
     particles_swap(lists.particles);
-    buffer_read(lists.dev, &lists.particles->field[FIELD_STATE].now, 0, N * sizeof *got.element,
-        got.element);
-    buffer_read(lists.dev, &lists.particles->field[FIELD_GID].now, 0, N * sizeof *got.gid, got.gid);
+    buffer_read(&lists.particles->field[FIELD_STATE].now, 0, N * sizeof *got.element, got.element);
+    buffer_read(&lists.particles->field[FIELD_GID].now, 0, N * sizeof *got.gid, got.gid);
     for (int e = 0; e < N; e++) {
         assert_memory_equal(&got.element[e], &c.element[from[e]], sizeof *got.element);
         assert_true(got.gid[e] == c.gid[from[e]]);
     }
-    buffer_free(lists.dev, &index);
+    buffer_free(&index);
     crowd_free(&c);
     crowd_free(&got);
 }
@@ -41,27 +40,27 @@ static void selected_and_numbered(void **state)
     for (int e = 0; e < N; e++) n_set += flag[e] = e == 0 || e == N - 1 || tree_random(0, 1) < 0.3;
     fixture_buffer(lists.dev, &at, "at", sizeof flag, flag);
     fixture_buffer(lists.dev, &index, "index", sizeof got, NULL);
-    buffer_zero(lists.dev, &index);
-    assert_int_equal(scan_total(lists.dev, lists.scan, &at, N), n_set);
+    buffer_zero(&index);
+    assert_int_equal(scan_total(lists.scan, &at, N), n_set);
     launch_set_int(select, "n", N);
     launch_bind_buffer(select, "at", &at);
     launch_bind_buffer(select, "index", &index);
-    launch_run(select, lists.dev->compute, N, 0, NULL, NULL);
-    buffer_read(lists.dev, &index, 0, sizeof got, got);
+    launch_run(select, N);
+    buffer_read(&index, 0, sizeof got, got);
     for (int e = 0, k = 0; e < N; e++)
         if (flag[e]) assert_int_equal(got[k++], e);
     for (int k = n_set; k < N; k++) assert_int_equal(got[k], 0);
     launch_set_int(number, "n", N - 10);
     launch_set_int(number, "first", 1000);
     launch_bind_buffer(number, "value", &index);
-    launch_run(number, lists.dev->compute, N - 10, 0, NULL, NULL);
-    buffer_read(lists.dev, &index, 0, sizeof got, got);
+    launch_run(number, N - 10);
+    buffer_read(&index, 0, sizeof got, got);
     for (int k = 0; k < N - 10; k++) assert_int_equal(got[k], 1000 + k);
     for (int k = N - 10; k < N; k++) assert_int_equal(got[k], 0);
     launch_free(select);
     launch_free(number);
-    buffer_free(lists.dev, &at);
-    buffer_free(lists.dev, &index);
+    buffer_free(&at);
+    buffer_free(&index);
 }
 
 struct owned {
@@ -85,13 +84,12 @@ static void run_owner(
     launch_set_int(k, "rank", rank);
     launch_set_int(k, "remove", remove);
     for (int a = 0; a < 3; a++) launch_set_real_if(k, axis[a], tree_periodic[a] ? LISTS_PERIOD : 0);
-    launch_run(k, lists.dev->compute, N, 0, NULL, NULL);
-    buffer_read(lists.dev, &buffer[3], 0, sizeof out->owner, out->owner);
-    buffer_read(lists.dev, &buffer[4], 0, sizeof out->stay, out->stay);
-    buffer_read(lists.dev, &buffer[5], 0, sizeof out->leave, out->leave);
-    buffer_read(
-        lists.dev, &lists.particles->field[FIELD_STATE].now, 0, sizeof out->element, out->element);
-    for (int b = 0; b < 6; b++) buffer_free(lists.dev, &buffer[b]);
+    launch_run(k, N);
+    buffer_read(&buffer[3], 0, sizeof out->owner, out->owner);
+    buffer_read(&buffer[4], 0, sizeof out->stay, out->stay);
+    buffer_read(&buffer[5], 0, sizeof out->leave, out->leave);
+    buffer_read(&lists.particles->field[FIELD_STATE].now, 0, sizeof out->element, out->element);
+    for (int b = 0; b < 6; b++) buffer_free(&buffer[b]);
     launch_free(k);
 }
 
@@ -151,7 +149,7 @@ static void bounds_of_all(void **state)
         double low[3] = {9, 9, 9}, high[3] = {-9, -9, -9}, reach[2] = {9, -9};
         real fastest = 0;
         tree_upload(&lists, &c);
-        struct cells_bounds b = cells_bounds(lists.dev, lists.cells, lists.particles, size[k]);
+        struct cells_bounds b = cells_bounds(lists.cells, lists.particles, size[k]);
         for (int e = 0; e < size[k]; e++) {
             const real *v = c.element[e].v;
             for (int a = 0; a < 3; a++) {
@@ -174,12 +172,12 @@ static void bounds_of_all(void **state)
             if (bad % 2) r->x[bad % 3] = bad == 1 ? (preal)NAN : (preal)INFINITY;
             else r->v[bad % 3] = bad == 0 ? (real)NAN : (real)-INFINITY;
             tree_upload(&lists, &c);
-            assert_true(cells_bounds(lists.dev, lists.cells, lists.particles, size[k]).has_nan);
+            assert_true(cells_bounds(lists.cells, lists.particles, size[k]).has_nan);
             *r = good;
         }
         crowd_free(&c);
     }
-    struct cells_bounds none = cells_bounds(lists.dev, lists.cells, lists.particles, 0);
+    struct cells_bounds none = cells_bounds(lists.cells, lists.particles, 0);
     assert_true(none.low[0] > none.high[0] && !none.has_nan);
 }
 
@@ -192,7 +190,7 @@ static void room_to_move(void **state)
     struct particles *p = lists.particles;
     (void)state;
     tree_upload(&lists, &c);
-    buffer_reserve(lists.dev, &p->reference, sizeof reference);
+    buffer_reserve(&p->reference, sizeof reference);
     launch_bind_buffer(k, "position", &p->field[FIELD_STATE].now);
     launch_bind_buffer(k, "motion", &p->field[FIELD_STATE].now);
     launch_bind_buffer(k, "reference", &p->reference);
@@ -201,9 +199,9 @@ static void room_to_move(void **state)
     launch_set_real(k, "skin", 3e-3);
     launch_set_real(k, "horizon", 2e-3);
     launch_set_real(k, "bond_range", 1e-3);
-    launch_run(k, lists.dev->compute, N, 0, NULL, NULL);
-    buffer_read(lists.dev, &p->reference, 0, sizeof reference, reference);
-    buffer_read(lists.dev, &p->reach, 0, sizeof reach, reach);
+    launch_run(k, N);
+    buffer_read(&p->reference, 0, sizeof reference, reference);
+    buffer_read(&p->reach, 0, sizeof reach, reach);
     for (int e = 0; e < N; e++) {
         const real *v = c.element[e].v;
         preal room =

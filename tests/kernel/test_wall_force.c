@@ -221,13 +221,13 @@ static void check(struct force_run *f)
     static double ledger[LEDGER_WIDTH * CAPACITY];
     static int state[CAPACITY];
     struct test *t = (struct test *)f;
-    buffer_write(f->dev, &f->buffer[0], 0, sizeof t->element, t->element);
-    buffer_write(f->dev, &f->buffer[5], 0, sizeof t->pose, t->pose);
-    launch_run(f->launch, f->dev->compute, N_CANDIDATE, 0, NULL, NULL);
+    buffer_write(&f->buffer[0], 0, sizeof t->element, t->element);
+    buffer_write(&f->buffer[5], 0, sizeof t->pose, t->pose);
+    launch_run(f->launch, N_CANDIDATE);
     reader_read(&f->reader, NULL, 0, &f->buffer[12], N_CANDIDATE, reading);
-    buffer_read(f->dev, &f->buffer[7], 0, sizeof state, state);
-    buffer_read(f->dev, &f->buffer[8], 0, sizeof history, history);
-    buffer_read(f->dev, &f->buffer[9], 0, sizeof ledger, ledger);
+    buffer_read(&f->buffer[7], 0, sizeof state, state);
+    buffer_read(&f->buffer[8], 0, sizeof history, history);
+    buffer_read(&f->buffer[9], 0, sizeof ledger, ledger);
     for (int c = 0; c < N_CANDIDATE; c++) {
         struct host_contact host = law_of(t, c);
         check_candidate(t, c, reading + c, state, history, ledger, host);

@@ -121,12 +121,11 @@ static void build(const struct crowd *c)
     struct particles *p = lists.particles;
     p->n_owned = c->n_owned;
     p->n_ghost = 0;
-    particles_reserve(lists.dev, p, &lists.features, c->n_all, 0);
-    buffer_write(lists.dev, &p->field[FIELD_STATE].now, 0, (size_t)c->n_all * sizeof *c->element,
-        c->element);
-    buffer_write(lists.dev, &p->reach, 0, (size_t)c->n_all * sizeof *c->reach, c->reach);
-    wall_contacts_set_step(lists.dev, contacts, STEP_NOW);
-    wall_contacts_build(lists.dev, contacts, lists.scan, p, STEP_NOW, 2, low, high);
+    particles_reserve(p, &lists.features, c->n_all, 0);
+    buffer_write(&p->field[FIELD_STATE].now, 0, (size_t)c->n_all * sizeof *c->element, c->element);
+    buffer_write(&p->reach, 0, (size_t)c->n_all * sizeof *c->reach, c->reach);
+    wall_contacts_set_step(contacts, STEP_NOW);
+    wall_contacts_build(contacts, lists.scan, p, STEP_NOW, 2, low, high);
 }
 
 /* What the device has: candidates of element e are begin[e] <= k < begin[e + 1]. */
@@ -139,10 +138,10 @@ static struct found read_found(void)
 {
     struct wall_list *l = &contacts->now;
     size_t bytes = (size_t)(l->capacity * contacts->layout.history) * sizeof(real);
-    struct found f = {lists_ints(&lists, &l->begin, N + 1), lists_ints(&lists, &l->candidate, l->n),
-        lists_ints(&lists, &l->element, l->n), lists_ints(&lists, &contacts->keep, l->n),
-        lists_ints(&lists, &l->state, l->capacity), fail_alloc(bytes)};
-    buffer_read(lists.dev, &l->history, 0, bytes, f.history);
+    struct found f = {lists_ints(&l->begin, N + 1), lists_ints(&l->candidate, l->n),
+        lists_ints(&l->element, l->n), lists_ints(&contacts->keep, l->n),
+        lists_ints(&l->state, l->capacity), fail_alloc(bytes)};
+    buffer_read(&l->history, 0, bytes, f.history);
     return f;
 }
 
@@ -186,7 +185,7 @@ static void one_contact_per_minimum(void **unused)
     struct crowd c = make();
     int n_kept = 0, n_dropped = 0;
     build(&c);
-    wall_contacts_select(lists.dev, contacts, lists.particles);
+    wall_contacts_select(contacts, lists.particles);
     struct found f = read_found();
     struct wall_closest *closest = fail_alloc((size_t)walls->n_primitive * sizeof *closest);
     int *kept = fail_alloc((size_t)walls->n_primitive * sizeof *kept);
@@ -227,8 +226,8 @@ static void write_histories(const struct crowd *c, struct found *f)
             f->history[p * l->capacity + k] =
                 f->state[k] ? history_of(c->gid[f->element[k]], f->candidate[k], p) : 0;
     }
-    buffer_write(lists.dev, &l->state, 0, (size_t)l->capacity * sizeof *f->state, f->state);
-    buffer_write(lists.dev, &l->history, 0,
+    buffer_write(&l->state, 0, (size_t)l->capacity * sizeof *f->state, f->state);
+    buffer_write(&l->history, 0,
         (size_t)(l->capacity * contacts->layout.history) * sizeof *f->history, f->history);
 }
 
@@ -267,7 +266,7 @@ static void friction_goes_over_the_mesh(void **unused)
     build(&c);
     struct found before = read_found();
     write_histories(&c, &before);
-    wall_contacts_select(lists.dev, contacts, lists.particles);
+    wall_contacts_select(contacts, lists.particles);
     struct found f = read_found();
     int *state = fail_alloc((size_t)contacts->now.capacity * sizeof *state),
         *from = fail_alloc((size_t)contacts->now.capacity * sizeof *from);
@@ -324,12 +323,11 @@ static void histories_follow_their_contacts(void **unused)
     for (int k = 0; k < LEAVE; k++) leave[k] = k;
     fixture_buffer(lists.dev, &index, "index", sizeof leave, leave);
     fixture_buffer(lists.dev, &old_index, "old index", sizeof old, old);
-    owners_pick_contacts(
-        lists.dev, &leaving, lists.scan, &index, LEAVE, NULL, contacts, sizeof(real));
-    owners_store_contacts(lists.dev, &contacts->arrivals, &leaving, LEAVE, sizeof(cl_int),
+    owners_pick_contacts(&leaving, lists.scan, &index, LEAVE, NULL, contacts, sizeof(real));
+    owners_store_contacts(&contacts->arrivals, &leaving, LEAVE, sizeof(cl_int),
         contacts->layout.history, sizeof(real));
     build(&moved);
-    wall_contacts_carry(lists.dev, contacts, &old_index);
+    wall_contacts_carry(contacts, &old_index);
     struct found f = read_found();
     for (int e = 0; e < N; e++)
         for (int k = f.begin[e], q = before.begin[from[e]]; k < f.begin[e + 1]; k++) {
@@ -347,8 +345,8 @@ static void histories_follow_their_contacts(void **unused)
     assert_true(n_kept > N && n_kept < contacts->now.n - N);
     void *part[] = {leaving.begin, leaving.key, leaving.state, leaving.history};
     for (int k = 0; k < 4; k++) free(part[k]);
-    buffer_free(lists.dev, &index);
-    buffer_free(lists.dev, &old_index);
+    buffer_free(&index);
+    buffer_free(&old_index);
     free_found(&before);
     free_found(&f);
     crowd_free(&c);
@@ -369,7 +367,7 @@ int main(int argc, char **argv)
         lists.dev, comm, &lists.features, &scene, walls, dt, lists.program, force);
     assert_int_equal(contacts->layout.history, HISTORY_WIDTH);
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    wall_contacts_free(lists.dev, contacts);
+    wall_contacts_free(contacts);
     program_free(force);
     lists_close(&lists);
     walls_free(walls);

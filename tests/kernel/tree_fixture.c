@@ -12,10 +12,10 @@ void tree_upload(struct lists *lists, const struct crowd *c)
     size_t n = (size_t)c->n_all;
     p->n_owned = c->n_owned;
     p->n_ghost = c->n_all - c->n_owned;
-    particles_reserve(lists->dev, p, &lists->features, c->n_all, 0);
-    buffer_write(lists->dev, &p->field[FIELD_STATE].now, 0, n * sizeof *c->element, c->element);
-    buffer_write(lists->dev, &p->field[FIELD_GID].now, 0, n * sizeof *c->gid, c->gid);
-    buffer_write(lists->dev, &p->reach, 0, n * sizeof *c->reach, c->reach);
+    particles_reserve(p, &lists->features, c->n_all, 0);
+    buffer_write(&p->field[FIELD_STATE].now, 0, n * sizeof *c->element, c->element);
+    buffer_write(&p->field[FIELD_GID].now, 0, n * sizeof *c->gid, c->gid);
+    buffer_write(&p->reach, 0, n * sizeof *c->reach, c->reach);
 }
 
 struct crowd tree_crowd(int n, double beyond)

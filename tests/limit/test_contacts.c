@@ -176,7 +176,7 @@ static void compare_each(struct sim *s, double tolerance)
     s->scene = &part;
     for (int k = 0; k < whole->n_contact; k++) {
         part.contact = whole->contact + k;
-        limit_free(s->dev, s->particle->limit);
+        limit_free(s->particle->limit);
         s->particle->limit = limit_create(s);
         compare(s, limit_run(s, 1e-4, 0.8), 1e-4, 0.8, tolerance, 20);
     }
