@@ -2,6 +2,8 @@
  * links have broken goes on, to the bit, as the body that never had them. */
 #include "tests/limit/limit_test.h"
 
+#include <string.h>
+
 #include "comm/fail.h"
 #include "lattice_bodies.h"
 #include "lattice/lattice_break.h"
@@ -249,9 +251,11 @@ static void released(void **state)
     }
 }
 
-int main(void)
+/* Argument: none, or schemes for what takes longer. */
+int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(one_link), cmocka_unit_test(schemes_agree),
-        cmocka_unit_test(as_if_never_there), cmocka_unit_test(released)};
-    return DEVICE_TESTS(tests);
+    const struct CMUnitTest some[] = {
+        cmocka_unit_test(one_link), cmocka_unit_test(as_if_never_there)};
+    const struct CMUnitTest more[] = {cmocka_unit_test(schemes_agree), cmocka_unit_test(released)};
+    return argc > 1 && strcmp(argv[1], "schemes") == 0 ? DEVICE_TESTS(more) : DEVICE_TESTS(some);
 }
