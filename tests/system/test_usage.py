@@ -37,8 +37,8 @@ class Usage(cli.Case):
     def test_other_mpirun(self):
         """The mpirun of another MPI gives a job its size, but the ranks do not find each other."""
         run = self.call("--version", env={"PMI_SIZE" if mpi.is_open_mpi() else "OMPI_COMM_WORLD_SIZE": "2"})
-        self.assertEqual((run.code, run.out, len(run.err)), (2, "", 1))
-        self.assertIn("mpirun is not of the MPI that democles is built with", run.err[0])
+        said = [line for line in run.err if "mpirun is not of the MPI that democles is built with" in line]
+        self.assertEqual((run.code, run.out, len(said)), (2, "", 1))
 
 
 class Printed(cli.Case):
