@@ -74,9 +74,9 @@ def run(options, name, k):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--cells", type=int, default=60, help="along each edge (default: %(default)s)")
-    parser.add_argument("--steps", type=int, default=50, help="per run (default: %(default)s)")
-    parser.add_argument("--rounds", type=int, default=5, help="(default: %(default)s)")
+    parser.add_argument("--cells", type=int, default=60, help="number of cells along each edge of the block (default: %(default)s)")
+    parser.add_argument("--steps", type=int, default=50, help="number of steps per run (default: %(default)s)")
+    parser.add_argument("--rounds", type=int, default=5, help="repetitions, of which the fastest counts (default: %(default)s)")
     parser.add_argument("--precision", default="double", help="double, single or mixed (default: %(default)s)")
     parser.add_argument("--program", default=places.program())
     options = parser.parse_args()

@@ -63,7 +63,7 @@ def draw(path, titles, values):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("dir", metavar="DIR", type=pathlib.Path, help="folder of results")
-    parser.add_argument("name", metavar="NAME", nargs="*", help="of a measure")
+    parser.add_argument("name", metavar="NAME", nargs="*", help="name of a measure")
     options = parser.parse_args()
     if not options.dir.is_dir():
         sys.exit(f"plot: there is no folder {options.dir}")
@@ -74,6 +74,6 @@ def main():
         titles, values = read(path)
         if titles is None or len(titles) < 2:
             if options.name:
-                sys.exit(f"plot: {path} is no time series")
+                sys.exit(f"plot: {path} is not a time series")
             continue  # a CSV of the user's own
         draw(path, titles, values)

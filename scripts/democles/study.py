@@ -1,4 +1,4 @@
-"""What the studies of runs on many ranks share: a run, what its record says, tables."""
+"""Shared by the studies of runs on many ranks: starting a run, reading its record, writing tables."""
 import csv
 import json
 import os
@@ -8,11 +8,11 @@ import subprocess
 
 from democles import mpi
 
-PARTS = ("compute", "exchange", "wait", "regroup")  # of the loop's time, disjoint here: exchange without wait
+PARTS = ("compute", "exchange", "wait", "regroup")  # of the loop's time; they do not overlap here: exchange is without wait
 
-# Speed-up and efficiency [%] as the seed report prints them (VEDO and Iris, National Taiwan University; base: one processor).
-SEED_SOURCE = "seed report (VEDO and Iris, National Taiwan University), tables of cases A and B, geometric and graph partitioning"
-SEED = {
+# Published speed-up and efficiency [%] of a reference solver, on the scenes that cases/ repeats (base: one processor).
+REFERENCE_SOURCE = "report on VEDO and Iris (National Taiwan University), tables of cases A and B, geometric and graph partitioning"
+REFERENCE = {
     "v_funnel": {"geometric": {4: (3.76, 94.09), 8: (6.59, 82.33), 16: (9.16, 57.24)},
                  "graph": {4: (3.77, 94.14), 8: (6.10, 76.24), 16: (7.66, 47.91)}},
     "l_box": {"geometric": {4: (3.60, 90.09), 8: (6.24, 78.05), 16: (8.25, 51.55)},
@@ -20,17 +20,17 @@ SEED = {
 
 
 def cores():
-    """That this process may use."""
+    """Number of cores that this process may use."""
     return len(os.sched_getaffinity(0))
 
 
 def numbers(text):
-    """[1, 2, 4] from "1,2,4"."""
+    """Turns "1,2,4" into [1, 2, 4]."""
     return [int(word) for word in text.split(",")]
 
 
 def run(program, scene, folder, ranks, *args):
-    """Runs, replacing what is in the folder; a scene that is a folder of results goes on from its newest frame. Returns exit code and stderr."""
+    """Runs, replacing what is in the folder; a scene that is a folder of results is resumed from its latest frame. Returns exit code and stderr."""
     # a core for each rank: else one rank alone would have them all, and two could not be faster
     env = {"POCL_MAX_PTHREAD_COUNT": "1", "POCL_MAX_COMPUTE_UNITS": "1", **mpi.environment()}
     command = [str(program), "run", str(scene), "-o", str(folder), "--force"]
@@ -45,7 +45,7 @@ def run(program, scene, folder, ranks, *args):
 
 
 def take_up(results, folder):
-    """A new folder with what a run goes on from."""
+    """Makes a new folder with the files from which a run resumes."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     for path in [*results.glob("*.yaml"), *results.glob("*.csv"), max(results.glob("frame_[0-9]*.hdf"))]:

@@ -1,4 +1,4 @@
-/* Bending by small rotations: exact for nu = 0, second order otherwise, and what the seed's
+/* Bending by small rotations: exact for nu = 0, second order otherwise, and what the reference's
  * constants make of it. */
 #include "body.h"
 

@@ -33,7 +33,7 @@ static void table_of_damping_ratios(void **state)
 static void known_values(void **state)
 {
     (void)state;
-    ASSERT_NEAR(restitution_of_damping(0.02, true), 0.93909, 5.1e-6); /* the seed's */
+    ASSERT_NEAR(restitution_of_damping(0.02, true), 0.93909, 5.1e-6); /* of the reference solver */
     ASSERT_NEAR(restitution_of_damping(0.02, false), 0.93984, 5.1e-6);
     ASSERT_NEAR(restitution_of_damping(1, false), exp(-2), 1e-15);
     ASSERT_NEAR(restitution_of_damping(1, true), 0, 0);
