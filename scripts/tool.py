@@ -1,8 +1,10 @@
 #!/usr/bin/python3
 """Starts the tool that this file is called as: scripts/plot.py and democles-plot are links to it, and run democles/plot.py."""
 import importlib
+import os
 import pathlib
 import sys
 
+os.environ.setdefault("DEMOCLES_MPIRUN", "mpirun")  # installed: that of the program's MPI
 NAME = pathlib.Path(sys.argv[0]).stem.removeprefix("democles-").replace("-", "_")
 importlib.import_module("democles." + NAME).main()

@@ -37,3 +37,7 @@ def environment():
 def rank_variable():
     """In the environment of each rank."""
     return "OMPI_COMM_WORLD_RANK" if is_open_mpi() else "PMI_RANK"
+
+
+if __name__ == "__main__":
+    os.execvpe(MPIRUN, command(*sys.argv[1:]), environment())
