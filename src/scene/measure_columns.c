@@ -15,9 +15,9 @@
     }
 
 const struct scene_item measure_columns_count[] = {
-    {"count", "1", "elements that are there and those that have left the run from there"},
-    {"present", "1", "elements that are there"},
-    {"left", "1", "elements that have left the run from there"}, END};
+    {"count", "1", "particles that are there and those that were removed from the run there"},
+    {"present", "1", "particles that are there"},
+    {"removed", "1", "particles that were removed from the run there"}, END};
 
 const struct scene_item measure_columns_energy_particles[] = {
     MEASURE_ENERGY_PARTICLES(ENERGY) BALANCE, END};
