@@ -1,5 +1,6 @@
 #include "particle_fields.h"
 
+#include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
@@ -112,6 +113,22 @@ static void *make_coordination(struct sim *s)
         free(bits);
     }
     return count;
+}
+
+/* Largest overlap with a neighbour over the own radius: (r_i + r_j - d)/r_i, 0 where none touches.
+ * The largest number does not depend on the order, so not on the ranks. Collective. */
+static void *make_overlap(struct sim *s)
+{
+    struct near near = near_read(s);
+    double *overlap = fail_alloc(near.n * sizeof *overlap);
+    for (size_t i = 0; i < near.n; i++)
+        for (int k = near.begin[i]; k < near.begin[i + 1]; k++) {
+            const double *a = near.x[i], *b = near.x[near.row[k]],
+                         depth = a[3] + b[3] - sqrt(near_distance2(&near, a, b));
+            overlap[i] = fmax(overlap[i], depth / a[3]);
+        }
+    near_free(&near);
+    return overlap;
 }
 
 static void *make_owner(struct sim *s)

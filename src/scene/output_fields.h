@@ -35,6 +35,8 @@ F(radius, "m", 1, F64, SHOWN, any, HOST(radius), "radius of the sphere") \
 F(mass, "kg", 1, F64, SHOWN, any, HOST(mass), "mass") \
 F(coordination, "1", 1, I32, SHOWN, any, MADE(coordination), \
     "number of contacts with particles and walls") \
+F(overlap, "1", 1, F64, SHOWN, any, MADE(overlap), \
+    "largest overlap with another particle, over the particle's radius; 0: none") \
 F(material, "1", 1, I32, SHOWN, any, HOST(material), "index of the material in the scene") \
 F(owner, "1", 1, I32, SHOWN, any, MADE(owner), "MPI rank that owns the particle")
 
