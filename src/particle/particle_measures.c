@@ -42,37 +42,68 @@ static void measure_count(struct sim *s, int i, const struct view *view, double 
     value[2] = (double)n[1];
 }
 
-/* Force of the elements on a wall: minus the sum of the result records, in units of 2^-60 N times
- * 2^20 so that the order does not matter. */
-static void measure_wall(struct sim *s, int i, const struct view *view, double *value)
+/* What an element does to a wall: minus the force f that the wall has on it, or the moment of that
+ * force about a point and minus the torque f[4..6] that the wall has on the element about its
+ * centre x [m] (NULL: none). */
+static void act_on_wall(
+    const double *f, bool turns, const double x[3], const double about[3], double out[3])
 {
-    int wall = s->scene->measure[i].wall;
-    (void)view;
+    for (int a = 0; a < 3; a++) {
+        int b = (a + 1) % 3, c = (a + 2) % 3;
+        if (!x) out[a] = -f[a];
+        else
+            out[a] =
+                -((x[b] - about[b]) * f[c] - (x[c] - about[c]) * f[b]) - (turns ? f[4 + a] : 0);
+    }
+}
+
+/* Sums over the contacts of a wall what they do to it, in units of 2^-60 N or N m times 2^20 so
+ * that the order does not matter. host: the elements, for the torque; NULL: the force. Returns how
+ * many contacts have a force. */
+static int64_t sum_at_wall(
+    struct sim *s, const struct measure *what, const struct particles_host *host, double total[3])
+{
     struct particle_run *run = s->particle;
     const struct wall_contacts *w = run->wall_contacts;
     int64_t sum[7] = {0};
     /* WALL_RESULT_WIDTH of wall_force.cl, whatever that of pairs */
     size_t n = w ? (size_t)w->now.n : 0, width = w && w->layout.result > 4 ? 8 : 4;
-    cl_int *candidate = fail_alloc(n * sizeof *candidate);
+    cl_int *candidate = fail_alloc(n * sizeof *candidate),
+           *element = fail_alloc(n * sizeof *element);
     double *result =
         n > 0 ? reals_read(&w->result, run->features.real_is_float, 0, n * width) : NULL;
     if (n > 0) buffer_read(&w->now.candidate, 0, n * sizeof *candidate, candidate);
+    if (n > 0) buffer_read(&w->now.element, 0, n * sizeof *element, element);
     for (size_t k = 0; k < n; k++) {
         const double *f = result + k * width;
-        if (w->walls->wall_of[candidate[k]] != wall) continue;
+        double part[3];
+        if (w->walls->wall_of[candidate[k]] != what->wall) continue;
+        act_on_wall(f, width > 4, host ? host->x + 3 * element[k] : NULL, what->about, part);
         for (int a = 0; a < 3; a++) {
-            double high = floor(-f[a] * 0x1p20);
+            double high = floor(part[a] * 0x1p20);
             sum[2 * a] += (int64_t)high;
-            sum[2 * a + 1] += (int64_t)((-f[a] * 0x1p20 - high) * 0x1p40);
+            sum[2 * a + 1] += (int64_t)((part[a] * 0x1p20 - high) * 0x1p40);
         }
         sum[6] += fabs(f[0]) > 0 || fabs(f[1]) > 0 || fabs(f[2]) > 0;
     }
     comm_sum_i64(s->comm, sum, 7);
     for (int a = 0; a < 3; a++)
-        value[a] = (double)sum[2 * a] * 0x1p-20 + (double)sum[2 * a + 1] * 0x1p-60;
-    value[3] = (double)sum[6];
+        total[a] = (double)sum[2 * a] * 0x1p-20 + (double)sum[2 * a + 1] * 0x1p-60;
     free(candidate);
+    free(element);
     free(result);
+    return sum[6];
+}
+
+static void measure_wall(struct sim *s, int i, const struct view *view, double *value)
+{
+    (void)view;
+    value[3] = (double)sum_at_wall(s, &s->scene->measure[i], NULL, value);
+}
+
+static void measure_wall_torque(struct sim *s, int i, const struct view *view, double *value)
+{
+    sum_at_wall(s, &s->scene->measure[i], view->host, value);
 }
 
 /* The element's owner gives the bits, the others zeros; NaN once it has left the run. */
@@ -137,6 +168,7 @@ static const struct measure_row {
     [MEASURE_ENERGY] = {measure_columns_energy_particles, false, true, measure_energy},
     [MEASURE_MOMENTUM] = {measure_columns_momentum, false, true, measure_momentum},
     [MEASURE_WALL_FORCE] = {measure_columns_wall_force, false, false, measure_wall},
+    [MEASURE_WALL_TORQUE] = {measure_columns_wall_torque, true, false, measure_wall_torque},
     [MEASURE_PROBE] = {measure_columns_probe_particles, true, false, measure_probe},
 };
 

@@ -34,6 +34,10 @@ const struct scene_item measure_columns_wall_force[] = {
     {"force_x", "N", "force of the elements on the wall along x"}, {"force_y", "N", "along y"},
     {"force_z", "N", "along z"}, {"contacts", "1", "contacts with a force"}, END};
 
+const struct scene_item measure_columns_wall_torque[] = {
+    {"torque_x", "N m", "torque of the particles on the wall about the point, along x"},
+    {"torque_y", "N m", "along y"}, {"torque_z", "N m", "along z"}, END};
+
 const struct scene_item measure_columns_probe_particles[] = {{"x", "m", "place of the centre"},
     {"y", "m", ""}, {"z", "m", ""}, {"v_x", "m/s", "velocity"}, {"v_y", "m/s", ""},
     {"v_z", "m/s", ""}, {"w_x", "rad/s", "angular velocity"}, {"w_y", "rad/s", ""},

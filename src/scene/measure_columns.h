@@ -41,8 +41,8 @@ T(work, -1, MEASURED, ACCOUNT_WORK, "given by loads and prescribed motion")
 
 extern const struct scene_item measure_columns_count[], measure_columns_energy_particles[],
     measure_columns_energy_lattice[], measure_columns_momentum[], measure_columns_wall_force[],
-    measure_columns_probe_particles[], measure_columns_probe_lattice[],
-    measure_columns_stress_max[], measure_columns_broken[];
+    measure_columns_wall_torque[], measure_columns_probe_particles[],
+    measure_columns_probe_lattice[], measure_columns_stress_max[], measure_columns_broken[];
 
 /* What the fields of a probe of a cell add to its columns; and what they are, by their names. */
 extern const struct scene_item measure_columns_rotation[], measure_columns_small_rotation[],

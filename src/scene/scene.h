@@ -207,6 +207,7 @@ enum measure_kind {
     MEASURE_ENERGY,
     MEASURE_MOMENTUM,
     MEASURE_WALL_FORCE,
+    MEASURE_WALL_TORQUE,
     MEASURE_PROBE,
     MEASURE_STRESS_MAX,
     MEASURE_BROKEN
@@ -217,7 +218,8 @@ struct measure {
     enum measure_kind kind;
     double below[3]; /* count: element centre below this coordinate; +infinity where not given */
     double above[3]; /* count: above; -infinity where not given */
-    int wall;        /* wall_force: index into scene.wall */
+    int wall;        /* wall_force, wall_torque: index into scene.wall */
+    double about[3]; /* wall_torque: the point about which it is taken [m] */
     long element;    /* probe, particles: global id */
     double at[3];    /* probe, lattice: the cell whose centre is nearest [m] */
     char **field;    /* probe, lattice: [n_field] names */
