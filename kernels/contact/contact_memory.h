@@ -15,22 +15,37 @@
 #ifndef WITH_MOVING
 #define WITH_MOVING 0
 #endif
-#define WITH_ROLLING (WITH_ROLLING_CDT || WITH_ROLLING_EPSD)
-#define WITH_HISTORY (WITH_TANGENTIAL || WITH_ROLLING || WITH_BINDING || WITH_ENERGY)
-#define WITH_WALL_WORK (WITH_ENERGY && WITH_MOVING) /* the program of pairs has WITH_MOVING 0 */
+/* Each width is asked for with W(TANGENTIAL), ...: whether there is that feature. A kernel's W is
+ * FLAG, its own build options; the host has the features of a scene. The program of pairs has no
+ * MOVING. */
+#define FLAG(feature) WITH_##feature
+#define ROLLING_OF(W) (W(ROLLING_CDT) || W(ROLLING_EPSD))
+#define ROTATION_OF(W) (W(TANGENTIAL) || ROLLING_OF(W))
+#define HISTORY_OF(W) (W(TANGENTIAL) || ROLLING_OF(W) || W(BINDING) || W(ENERGY))
+#define THETA_OF(W) (W(TANGENTIAL) ? 3 : 0)
+#define DAMPING_N_OF(W) (THETA_OF(W) + (W(ROLLING_EPSD) ? 3 : 0))
+#define DAMPING_T_OF(W) (DAMPING_N_OF(W) + (W(ENERGY) ? 1 : 0))
+#define DAMPING_R_OF(W) (DAMPING_T_OF(W) + (W(ENERGY) && W(TANGENTIAL_DAMPING) ? 3 : 0))
+#define WALL_FORCE_OF(W) (DAMPING_R_OF(W) + (W(ENERGY) && ROLLING_OF(W) ? 3 : 0))
+#define HISTORY_WIDTH_OF(W) (WALL_FORCE_OF(W) + (W(ENERGY) && W(MOVING) ? 3 : 0))
+
+#define WITH_ROLLING ROLLING_OF(FLAG)
+#define WITH_HISTORY HISTORY_OF(FLAG)
+#define WITH_WALL_WORK (WITH_ENERGY && WITH_MOVING)
 #define XI_AT 0
-#define THETA_AT (WITH_TANGENTIAL ? 3 : 0)
-#define DAMPING_N_AT (THETA_AT + (WITH_ROLLING_EPSD ? 3 : 0))
-#define DAMPING_T_AT (DAMPING_N_AT + (WITH_ENERGY ? 1 : 0))
-#define DAMPING_R_AT (DAMPING_T_AT + (WITH_ENERGY && WITH_TANGENTIAL_DAMPING ? 3 : 0))
-#define WALL_FORCE_AT (DAMPING_R_AT + (WITH_ENERGY && WITH_ROLLING ? 3 : 0))
-#define HISTORY_WIDTH (WALL_FORCE_AT + (WITH_WALL_WORK ? 3 : 0))
+#define THETA_AT THETA_OF(FLAG)
+#define DAMPING_N_AT DAMPING_N_OF(FLAG)
+#define DAMPING_T_AT DAMPING_T_OF(FLAG)
+#define DAMPING_R_AT DAMPING_R_OF(FLAG)
+#define WALL_FORCE_AT WALL_FORCE_OF(FLAG)
+#define HISTORY_WIDTH HISTORY_WIDTH_OF(FLAG)
 
 /* Result record: force; with rotation also the torque, which is the same on both of two equal
  * spheres; or the couple and both levers; or both torques. In fours, so that the gather takes a
  * force and a torque with one load each. */
-#define WITH_ROTATION (WITH_TANGENTIAL || WITH_ROLLING)
-#define RESULT_WIDTH (WITH_ROLLING ? 12 : WITH_ROTATION ? 8 : 4)
+#define RESULT_WIDTH_OF(W) (ROLLING_OF(W) ? 12 : ROTATION_OF(W) ? 8 : 4)
+#define WITH_ROTATION ROTATION_OF(FLAG)
+#define RESULT_WIDTH RESULT_WIDTH_OF(FLAG)
 
 #ifdef __OPENCL_VERSION__
 /* Vectors in rows of local memory [row][BATCH], l the contact. */
@@ -133,62 +148,11 @@ LAW void ledger_add(struct contact_result r, __global double *ledger, size_t cap
 #endif
 
 /* Parameters as kernel arguments, where all contacts of a program have the same; else rows of a
- * table by pair of materials. */
-#define PARAMETER_ARGUMENTS                                                                        \
-    real k_n, real gamma_n, real centring_n, real damp_n, real k_t, real gamma_t, real centring_t, \
-        real damp_t, real mu, real f_b, real roll_limit, real roll_stop, real k_r, real c_r,       \
-        int law
-#define PARAMETERS_OF_ARGUMENTS                                                                    \
-    parameters_of(k_n, gamma_n, centring_n, damp_n, k_t, gamma_t, centring_t, damp_t, mu, f_b,     \
-        roll_limit, roll_stop, k_r, c_r, law)
-
-LAW struct contact_parameters parameters_of(PARAMETER_ARGUMENTS)
-{
-    struct contact_parameters p;
-    p.k_n = k_n;
-    p.gamma_n = gamma_n;
-    p.centring_n = centring_n;
-    p.damp_n = damp_n;
-    p.k_t = k_t;
-    p.gamma_t = gamma_t;
-    p.centring_t = centring_t;
-    p.damp_t = damp_t;
-    p.mu = mu;
-    p.f_b = f_b;
-    p.roll_limit = roll_limit;
-    p.roll_stop = roll_stop;
-    p.k_r = k_r;
-    p.c_r = c_r;
-    p.law = law;
-    return p;
-}
-
-/* Parameters by material pair: rows of PARAMETER_WIDTH real, in the order of struct
- * contact_material (kinds > 1 size) or contact_parameters. */
-#define MATERIAL_WIDTH 10
-#define PARAMETER_WIDTH 15
-
-LAW struct contact_material material_load(__global const real *row)
-{
-    struct contact_material c;
-    c.k_n = row[0];
-    c.k_t = row[1];
-    c.gamma_n = row[2];
-    c.gamma_t = row[3];
-    c.mu = row[4];
-    c.f_b = row[5];
-    c.mu_r = row[6];
-    c.k_r = row[7];
-    c.c_r = row[8];
-    c.law = (int)row[9];
-    return c;
-}
-
-LAW struct contact_parameters parameters_load(__global const real *row)
-{
-    return parameters_of(row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8],
-        row[9], row[10], row[11], row[12], row[13], (int)row[14]);
-}
+ * table by pair of materials: material_load (kinds > 1 size) or parameters_load. */
+#define PARAMETER_ARGUMENT(type, name) type name,
+#define PARAMETER_NAME(type, name) name,
+#define PARAMETER_ARGUMENTS CONTACT_PARAMETERS(PARAMETER_ARGUMENT)
+#define PARAMETERS_OF_ARGUMENTS ((struct contact_parameters){CONTACT_PARAMETERS(PARAMETER_NAME)})
 #endif
 
 #endif

@@ -19,19 +19,19 @@
 #define CONTACT_HERTZ 1         /* Hertz-Mindlin, else linear */
 #define CONTACT_NO_ATTRACTION 2 /* the dashpot may not pull: F_n = max(F_n, 0) */
 
-/* Two materials, any sizes. S = 1 (linear) or R*^(1/2) (Hertz). */
-struct contact_material {
-    real k_n;     /* k_n/S: linear [N/m], Hertz (4/3) E* [Pa] */
-    real k_t;     /* k_t/S: linear [N/m], Hertz 8 G* [Pa] */
-    real gamma_n; /* gamma_n/(S m*)^(1/2): linear 2 z_n k_n^(1/2), Hertz 5^(1/2) z_n k_n^(1/2) */
-    real gamma_t; /* gamma_t/(S m*)^(1/2): 2 z_t (2 k_t/7)^(1/2) */
-    real mu;      /* friction [1]; 0: none */
-    real f_b;     /* binding force [N]; 0: none */
-    real mu_r;    /* rolling friction [1]; 0: none */
-    real k_r;     /* EPSD: k_r/(S R*^2); 0: CDT */
-    real c_r;     /* EPSD: C_r/(S R*^2 I*)^(1/2) */
-    int law;      /* CONTACT_ bits */
-};
+/* Two materials, any sizes. S = 1 (linear) or R*^(1/2) (Hertz). One row (type, name) each; from it
+ * follow the struct, the tables that the host makes and the kernels read. */
+#define CONTACT_MATERIAL(X)                                                                        \
+    X(real, k_n)     /* k_n/S: linear [N/m], Hertz (4/3) E* [Pa] */                                \
+    X(real, k_t)     /* k_t/S: linear [N/m], Hertz 8 G* [Pa] */                                    \
+    X(real, gamma_n) /* gamma_n/(S m*)^(1/2): 2 z_n k_n^(1/2), Hertz 5^(1/2) z_n k_n^(1/2) */      \
+    X(real, gamma_t) /* gamma_t/(S m*)^(1/2): 2 z_t (2 k_t/7)^(1/2) */                             \
+    X(real, mu)      /* friction [1]; 0: none */                                                   \
+    X(real, f_b)     /* binding force [N]; 0: none */                                              \
+    X(real, mu_r)    /* rolling friction [1]; 0: none */                                           \
+    X(real, k_r)     /* EPSD: k_r/(S R*^2); 0: CDT */                                              \
+    X(real, c_r)     /* EPSD: C_r/(S R*^2 I*)^(1/2) */                                             \
+    X(int, law)      /* CONTACT_ bits */
 
 /* Effective sizes of a pair. */
 struct contact_pair {
@@ -40,38 +40,68 @@ struct contact_pair {
     real i_star; /* 1/(1/(m_i r_i^2) + 1/(m_j r_j^2)) [kg m2]; wall: m_i r_i^2 */
 };
 
-/* Two materials, two sizes, one time step. Units: linear / Hertz. */
-struct contact_parameters {
-    real k_n;        /* [N/m] / [N/m^1.5] */
-    real gamma_n;    /* [N s/m] / [N s/m^1.25] */
-    real centring_n; /* gamma_n dt/(2 m*) [1] / [m^-0.25] */
-    real damp_n;     /* linear: 1/(1 + centring_n) */
-    real k_t;        /* [N/m] / [N/m^1.5] */
-    real gamma_t;    /* [N s/m] / [N s/m^1.25] */
-    real centring_t; /* 3.5 gamma_t dt/(2 m*) [1] / [m^-0.25] */
-    real damp_t;     /* linear: 1/(1 + centring_t) */
-    real mu;         /* [1] */
-    real f_b;        /* [N] */
-    real roll_limit; /* mu_r R* [m] */
-    /* CDT: 1/(dt (1/I_i + 1/I_j)) [N m s]: the moment per relative spin that would stop it within
-     * one step */
-    real roll_stop;
-    real k_r; /* EPSD: [N m] / [N m^0.5]; 0: CDT */
-    real c_r; /* EPSD: [N m s] / [N m^0.75 s] */
-    int law;  /* CONTACT_ bits */
+/* Two materials, two sizes, one time step, in rows as above; also the arguments of the force
+ * kernels where all contacts have the same. Units: linear / Hertz. */
+#define CONTACT_PARAMETERS(X)                                                                      \
+    X(real, k_n)        /* [N/m] / [N/m^1.5] */                                                    \
+    X(real, gamma_n)    /* [N s/m] / [N s/m^1.25] */                                               \
+    X(real, centring_n) /* gamma_n dt/(2 m*) [1] / [m^-0.25] */                                    \
+    X(real, damp_n)     /* linear: 1/(1 + centring_n) */                                           \
+    X(real, k_t)        /* [N/m] / [N/m^1.5] */                                                    \
+    X(real, gamma_t)    /* [N s/m] / [N s/m^1.25] */                                               \
+    X(real, centring_t) /* 3.5 gamma_t dt/(2 m*) [1] / [m^-0.25] */                                \
+    X(real, damp_t)     /* linear: 1/(1 + centring_t) */                                           \
+    X(real, mu)         /* [1] */                                                                  \
+    X(real, f_b)        /* [N] */                                                                  \
+    X(real, roll_limit) /* mu_r R* [m] */                                                          \
+    X(real, roll_stop) /* CDT: 1/(dt (1/I_i + 1/I_j)) [N m s]: moment per spin to stop it in dt */ \
+    X(real, k_r)       /* EPSD: [N m] / [N m^0.5]; 0: CDT */                                       \
+    X(real, c_r)       /* EPSD: [N m s] / [N m^0.75 s] */                                          \
+    X(int, law)        /* CONTACT_ bits */
+
+#define CONTACT_MEMBER(type, name) type name;
+struct contact_material {
+    CONTACT_MATERIAL(CONTACT_MEMBER)
 };
+struct contact_parameters {
+    CONTACT_PARAMETERS(CONTACT_MEMBER)
+};
+
+/* Columns of the tables' rows: MATERIAL_k_n, PARAMETER_k_n, ... */
+#define MATERIAL_COLUMN(type, name) MATERIAL_##name,
+#define PARAMETER_COLUMN(type, name) PARAMETER_##name,
+enum { CONTACT_MATERIAL(MATERIAL_COLUMN) MATERIAL_WIDTH };
+enum { CONTACT_PARAMETERS(PARAMETER_COLUMN) PARAMETER_WIDTH };
+
+#ifdef __OPENCL_VERSION__
+#define CONTACT_ROW __global const real
+#else
+#define CONTACT_ROW const double
+#endif
+#define MATERIAL_FROM_ROW(type, name) (type) row[MATERIAL_##name],
+#define PARAMETER_FROM_ROW(type, name) (type) row[PARAMETER_##name],
+
+LAW struct contact_material material_load(CONTACT_ROW *row)
+{
+    struct contact_material c = {CONTACT_MATERIAL(MATERIAL_FROM_ROW)};
+    return c;
+}
+
+LAW struct contact_parameters parameters_load(CONTACT_ROW *row)
+{
+    struct contact_parameters p = {CONTACT_PARAMETERS(PARAMETER_FROM_ROW)};
+    return p;
+}
 
 /* k_n [N/m], damping ratios z [1], k_t/k_n [1]. Friction, binding and rolling are off. */
 LAW struct contact_material contact_material_linear(
     real k_n, real z_n, real stiffness_ratio, real z_t)
 {
-    struct contact_material c;
+    struct contact_material c = {0};
     c.k_n = k_n;
     c.k_t = stiffness_ratio * k_n;
     c.gamma_n = (real)2 * z_n * r_sqrt(c.k_n);
     c.gamma_t = (real)2 * z_t * r_sqrt(c.k_t * (real)2 / (real)7);
-    c.mu = c.f_b = c.mu_r = c.k_r = c.c_r = 0;
-    c.law = 0;
     return c;
 }
 

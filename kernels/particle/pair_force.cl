@@ -117,7 +117,7 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void pair_forc
 #if WITH_SIZES || WITH_MATERIALS
     int n_material, __global const real *restrict table,
 #else
-    PARAMETER_ARGUMENTS,
+    PARAMETER_ARGUMENTS
 #endif
 #if !WITH_SIZES
     real radius,

@@ -107,7 +107,7 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void wall_forc
 #if WITH_TABLE || WITH_SIZES
     __global const real *restrict table,
 #else
-    PARAMETER_ARGUMENTS,
+    PARAMETER_ARGUMENTS
 #endif
     __global real *restrict result, real dt)
 {

@@ -95,11 +95,6 @@ static void print_time(
     scene_errors_free(&warnings);
 }
 
-static bool feature_value(const void *features, int k)
-{
-    return features_value(features, k);
-}
-
 static void print_all(
     const struct scene *scene, const struct walls *walls, const struct elements_host *elements)
 {
@@ -110,7 +105,7 @@ static void print_all(
     check_contacts(scene, elements);
     print_time(scene, walls, elements);
     check_output(scene);
-    check_features(features_name, feature_value, &features);
+    check_features(features_table, &features);
     double per_element = check_element_bytes(&features), per_pair = check_pair_bytes(&features);
     printf("\nmemory on the devices: %.0f bytes per particle and %.0f per neighbour pair; %.1f MiB "
            "with "

@@ -41,15 +41,14 @@ void check_output(const struct scene *scene)
         printf("    %s.csv every %g s\n", scene->measure[k].name, scene->measure[k].every);
 }
 
-void check_features(
-    const char *(*name)(int), bool (*value)(const void *, int), const void *features)
+void check_features(const struct feature_row *table, const void *features)
 {
     for (int in = 1; in >= 0; in--) {
         int column = printf("%sfeatures %s:", in ? "\n" : "", in ? "in" : "out");
-        for (int k = 0; name(k); k++) {
-            if (value(features, k) != in) continue;
+        for (const struct feature_row *row = table; feature_table_more(row); row++) {
+            if (!row->name || feature_table_value(row, features) != in) continue;
             if (column > 100) column = printf("\n   ");
-            column += printf(" %s", name(k));
+            column += printf(" %s", row->name);
         }
         printf("\n");
     }

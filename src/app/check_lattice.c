@@ -120,11 +120,6 @@ static void print_thin(const struct scene *scene, const struct lattice_cells *ce
         }
 }
 
-static bool feature_value(const void *features, int k)
-{
-    return lattice_features_value(features, k);
-}
-
 int check_lattice(const struct comm *comm, const struct scene *scene, bool resolved)
 {
     struct scene_errors errors = {0};
@@ -141,7 +136,7 @@ int check_lattice(const struct comm *comm, const struct scene *scene, bool resol
         print_boundaries(scene, cells);
         print_time(scene, cells);
         check_output(scene);
-        check_features(lattice_features_name, feature_value, &features);
+        check_features(lattice_features_table, &features);
     }
     lattice_cells_free(cells);
     return EXIT_DONE;

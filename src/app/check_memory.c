@@ -1,37 +1,12 @@
-/* Device memory per element, from the widths that the kernels themselves use: their WITH_ switches
- * are read here at run time. */
+/* Device memory per element, from the widths that the kernels themselves use
+ * (contact_memory.h). */
 #include "check_parts.h"
 
+#include "kernels/contact/contact_memory.h"
 #include "particle/particles.h"
 
-/* Widths of contact_memory.h, for the features of one program. The laws of that header are not
- * used. */
-#define WITH_LINEAR 1
-#define WITH_HERTZ 1
-#define WITH_NO_ATTRACTION 1
-#define WITH_TANGENTIAL 1
-#define WITH_TANGENTIAL_DAMPING 1
-#define WITH_ROLLING_CDT 1
-#define WITH_ROLLING_EPSD 1
-#define WITH_BINDING 1
-#define WITH_ENERGY 1
-#define WITH_SIZES 1
-#define WITH_MOVING 0 /* of the program of pairs */
-#include "kernels/contact/contact_memory.h"
-#undef WITH_TANGENTIAL
-#undef WITH_TANGENTIAL_DAMPING
-#undef WITH_ROLLING_CDT
-#undef WITH_ROLLING_EPSD
-#undef WITH_BINDING
-#undef WITH_ENERGY
-#undef WITH_SIZES
-#define WITH_TANGENTIAL (features->pair.tangential)
-#define WITH_TANGENTIAL_DAMPING (features->pair.tangential_damping)
-#define WITH_ROLLING_CDT (features->pair.rolling_cdt)
-#define WITH_ROLLING_EPSD (features->pair.rolling_epsd)
-#define WITH_BINDING (features->pair.binding)
-#define WITH_ENERGY (features->energy)
-#define WITH_SIZES (features->sizes)
+/* What the program of pairs is built with. */
+#define HAS(flag) feature_table_option(features_table, features, FEATURES_PAIR, "WITH_" #flag)
 
 enum { ROW_FOUND = 32 }; /* as in kernels/particle/rows.cl */
 
@@ -42,9 +17,9 @@ double check_pair_bytes(const struct features *features)
     size_t real_bytes = particles_real(features), whole = sizeof(cl_int); /* [byte] */
     /* rows; pair_i, pair_j, incidence of both */
     size_t list = 2 * (whole + sizeof(cl_long)) + 4 * whole;
-    if (WITH_HISTORY) list += whole + (size_t)(HISTORY_WIDTH)*real_bytes;
-    return (double)(2 * list + (size_t)(RESULT_WIDTH)*real_bytes +
-                    (WITH_ENERGY ? LEDGER_WIDTH * sizeof(cl_double) : 0));
+    if (HISTORY_OF(HAS)) list += whole + (size_t)HISTORY_WIDTH_OF(HAS) * real_bytes;
+    return (double)(2 * list + (size_t)RESULT_WIDTH_OF(HAS) * real_bytes +
+                    (HAS(ENERGY) ? LEDGER_WIDTH * sizeof(cl_double) : 0));
 }
 
 /* State now and spare, place and reach of the last lists, force and torque; indices of cells, lists

@@ -12,8 +12,7 @@ int check_lattice(const struct comm *comm, const struct scene *scene, bool resol
  * names and values. */
 void check_head(const struct scene *scene);
 void check_output(const struct scene *scene);
-void check_features(
-    const char *(*name)(int), bool (*value)(const void *features, int), const void *features);
+void check_features(const struct feature_row *table, const void *features);
 
 /* The contact laws of all pairs of materials that can meet, with what follows from the sizes of the
  * elements. */

@@ -1,7 +1,7 @@
 #include "lattice_features.h"
 
 #include <math.h>
-#include <stddef.h>
+#include <stdlib.h>
 
 #include "kernels/lattice/lattice_words.h"
 #include "comm/fail.h"
@@ -35,40 +35,36 @@ struct lattice_features lattice_features_of(
     return f;
 }
 
+#define ROW(member, option) FEATURE_ROW(struct lattice_features, member, option)
 /* clang-format off */
-#define FEATURE(member) {#member, offsetof(struct lattice_features, member)}
+const struct feature_row lattice_features_table[] = {
+    {NULL, "REAL_IS_FLOAT", offsetof(struct lattice_features, real_is_float), ~0},
+    {NULL, "POSITION_IS_FLOAT", offsetof(struct lattice_features, position_is_float), ~0},
+    ROW(turn, "WITH_TURN"),
+    ROW(volume, "WITH_VOLUME"),
+    ROW(shear_apart, "WITH_SHEAR_APART"),
+    ROW(twist_apart, "WITH_TWIST_APART"),
+    ROW(link_damping, "WITH_LINK_DAMPING"),
+    ROW(mass_damping, "WITH_MASS_DAMPING"),
+    ROW(fix, "WITH_FIX"),
+    ROW(loads, "WITH_LOADS"),
+    ROW(gravity, "WITH_GRAVITY"),
+    ROW(kinds, "WITH_KINDS"),
+    ROW(rk, "WITH_RK"),
+    ROW(nystrom, "WITH_NYSTROM"),
+    ROW(energy, "WITH_ENERGY"),
+    ROW(breakage, "WITH_BREAK"),
+    {NULL, NULL, 0, 0}};
 /* clang-format on */
-static const struct {
-    const char *name;
-    size_t at;
-} feature_table[] = {FEATURE(turn), FEATURE(volume), FEATURE(shear_apart), FEATURE(twist_apart),
-    FEATURE(link_damping), FEATURE(mass_damping), FEATURE(fix), FEATURE(loads), FEATURE(gravity),
-    FEATURE(kinds), FEATURE(rk), FEATURE(nystrom), FEATURE(energy), FEATURE(breakage), {NULL, 0}};
-
-const char *lattice_features_name(int i)
-{
-    return feature_table[i].name;
-}
-
-bool lattice_features_value(const struct lattice_features *features, int i)
-{
-    return *(const bool *)((const char *)features + feature_table[i].at);
-}
 
 char *lattice_features_options(
     const struct lattice_features *f, const struct lattice_layout *layout)
 {
-    return fail_format(
-        "-DREAL_IS_FLOAT=%d -DPOSITION_IS_FLOAT=%d -DWITH_TURN=%d -DWITH_VOLUME=%d "
-        "-DWITH_SHEAR_APART=%d -DWITH_TWIST_APART=%d "
-        "-DWITH_LINK_DAMPING=%d -DWITH_MASS_DAMPING=%d -DWITH_FIX=%d -DWITH_LOADS=%d "
-        "-DWITH_GRAVITY=%d -DWITH_KINDS=%d -DWITH_RK=%d "
-        "-DWITH_NYSTROM=%d -DWITH_ENERGY=%d -DWITH_BREAK=%d -DRUN_AXIS=%d -DBATCH=%d "
-        "-DBATCH_WIDTH=%d",
-        f->real_is_float, f->position_is_float, f->turn, f->volume, f->shear_apart, f->twist_apart,
-        f->link_damping, f->mass_damping, f->fix, f->loads, f->gravity, f->kinds, f->rk, f->nystrom,
-        f->energy, f->breakage, layout->axis, layout->run,
-        f->real_is_float && f->position_is_float && layout->run % 16 == 0 ? 16 : 8);
+    char *rows = feature_table_options(lattice_features_table, f, 1);
+    char *text = fail_format("%s -DRUN_AXIS=%d -DBATCH=%d -DBATCH_WIDTH=%d", rows, layout->axis,
+        layout->run, f->real_is_float && f->position_is_float && layout->run % 16 == 0 ? 16 : 8);
+    free(rows);
+    return text;
 }
 
 double *lattice_features_links(const struct lattice_cells *cells, const struct lattice_options *o)

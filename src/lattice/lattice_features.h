@@ -5,6 +5,7 @@
 
 #include <stdbool.h>
 
+#include "device/feature_table.h"
 #include "lattice_layout.h"
 #include "laws/lattice_schemes.h"
 
@@ -50,9 +51,7 @@ struct lattice_features {
 
 struct lattice_features lattice_features_of(
     const struct lattice_cells *cells, const struct lattice_options *o);
-/* Names and values, for run.json and `check`: i = 0, 1, ... until the name is NULL. */
-const char *lattice_features_name(int i);
-bool lattice_features_value(const struct lattice_features *features, int i);
+extern const struct feature_row lattice_features_table[];
 /* Build options; the caller frees. */
 char *lattice_features_options(
     const struct lattice_features *f, const struct lattice_layout *layout);

@@ -11,6 +11,7 @@
 #include "lattice_restore.h"
 #include "run/output.h"
 #include "results/report.h"
+#include "run/record.h"
 #include "run/resume.h"
 #include "scene/scene_report.h"
 
@@ -189,9 +190,7 @@ static void count(const struct sim *s, struct step_counts *counts)
 
 static void report_features(const struct sim *s, struct report *r)
 {
-    const struct lattice_features *f = &s->lattice->lattice->features;
-    for (int i = 0; lattice_features_name(i); i++)
-        report_integer(r, lattice_features_name(i), lattice_features_value(f, i));
+    record_features(r, lattice_features_table, &s->lattice->lattice->features);
 }
 
 /* Links broken so far, by mode. Collective. */

@@ -2,17 +2,6 @@
 
 #include <string.h>
 
-#define WITH_LINEAR 1
-#define WITH_HERTZ 1
-#define WITH_NO_ATTRACTION 1
-#define WITH_TANGENTIAL 1
-#define WITH_TANGENTIAL_DAMPING 1
-#define WITH_ROLLING_CDT 1
-#define WITH_ROLLING_EPSD 1
-#define WITH_BINDING 1
-#define WITH_ENERGY 1
-#include "kernels/contact/law_parameters.h"
-
 static const struct contact *find(const struct scene *scene, int a, int b)
 {
     for (int i = 0; i < scene->n_contact; i++) {
@@ -53,14 +42,15 @@ static struct contact_material material_of(const struct scene *scene, const stru
     return p;
 }
 
+#define VALUE(type, name) p.name,
+
 void contact_table_material(const struct scene *scene, int a, int b, double *row)
 {
     const struct contact *c = find(scene, a, b);
-    memset(row, 0, CONTACT_TABLE_MATERIAL * sizeof *row);
+    memset(row, 0, MATERIAL_WIDTH * sizeof *row);
     if (!c) return;
     struct contact_material p = material_of(scene, c);
-    const double value[CONTACT_TABLE_MATERIAL] = {
-        p.k_n, p.k_t, p.gamma_n, p.gamma_t, p.mu, p.f_b, p.mu_r, p.k_r, p.c_r, p.law};
+    const double value[MATERIAL_WIDTH] = {CONTACT_MATERIAL(VALUE)};
     memcpy(row, value, sizeof value);
 }
 
@@ -68,21 +58,28 @@ void contact_table_parameters(const struct scene *scene, int a, int b, bool wall
     double mass, double dt, double *row)
 {
     const struct contact *c = find(scene, a, b);
-    memset(row, 0, CONTACT_TABLE_PARAMETER * sizeof *row);
+    memset(row, 0, PARAMETER_WIDTH * sizeof *row);
     if (!c) return;
     struct contact_pair s = wall ? contact_pair_wall(1 / mass, radius)
                                  : contact_pair_of(1 / mass, 1 / mass, radius, radius);
     struct contact_parameters p = contact_parameters_of(material_of(scene, c), s, dt);
-    const double value[CONTACT_TABLE_PARAMETER] = {p.k_n, p.gamma_n, p.centring_n, p.damp_n, p.k_t,
-        p.gamma_t, p.centring_t, p.damp_t, p.mu, p.f_b, p.roll_limit, p.roll_stop, p.k_r, p.c_r,
-        p.law};
+    const double value[PARAMETER_WIDTH] = {CONTACT_PARAMETERS(VALUE)};
     memcpy(row, value, sizeof value);
 }
 
+static void set_real(struct launch *launch, const char *name, double value)
+{
+    launch_set_real(launch, name, value);
+}
+
+static void set_int(struct launch *launch, const char *name, double value)
+{
+    launch_set_int(launch, name, (int)value);
+}
+
+#define SET(type, name) set_##type(launch, #name, row[PARAMETER_##name]);
+
 void contact_table_set(struct launch *launch, const double *row)
 {
-    static const char *const name[] = {"k_n", "gamma_n", "centring_n", "damp_n", "k_t", "gamma_t",
-        "centring_t", "damp_t", "mu", "f_b", "roll_limit", "roll_stop", "k_r", "c_r"};
-    for (int i = 0; i < 14; i++) launch_set_real(launch, name[i], row[i]);
-    launch_set_int(launch, "law", (int)row[14]);
+    CONTACT_PARAMETERS(SET)
 }

@@ -1,11 +1,12 @@
 #include "features.h"
 
 #include <math.h>
-#include <stddef.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "kernels/contact/law_wall.h"
 #include "comm/fail.h"
+#include "contact_table.h"
 
 static bool is_wanted(const struct scene *scene, const char *field)
 {
@@ -14,17 +15,16 @@ static bool is_wanted(const struct scene *scene, const char *field)
     return false;
 }
 
-static void add_contact(struct law_features *law, const struct contact *c)
+static void add_contact(
+    struct law_features *law, const struct scene *scene, const struct contact *contact)
 {
+    double row[MATERIAL_WIDTH];
+    contact_table_material(scene, contact->between[0], contact->between[1], row);
+    struct contact_material c = material_load(row);
     law->any = true;
-    law->linear |= c->normal_law == NORMAL_LINEAR;
-    law->hertz |= c->normal_law == NORMAL_HERTZ;
-    law->no_attraction |= !c->attraction;
-    law->tangential |= c->has_tangential && c->friction > 0;
-    law->tangential_damping |= c->has_tangential && c->friction > 0 && c->tangential_damping > 0;
-    law->rolling_cdt |= c->rolling == ROLLING_CDT;
-    law->rolling_epsd |= c->rolling == ROLLING_EPSD;
-    law->binding |= c->binding_force > 0;
+#define ADD(member, flag, needed) law->member |= (needed) != 0;
+    CONTACT_FEATURES(ADD)
+#undef ADD
 }
 
 /* F_b/k_n, or (F_b/K)^(2/3) with K = (4/3) E* R*^(1/2) of the smallest sizes. */
@@ -54,6 +54,11 @@ static void element_features(
     }
 }
 
+static bool rotates(const struct law_features *law)
+{
+    return law->tangential || law->rolling_cdt || law->rolling_epsd;
+}
+
 struct features features_of(
     const struct scene *scene, const struct walls *walls, const struct elements_host *elements)
 {
@@ -72,11 +77,11 @@ struct features features_of(
                 is_wall[s] |= scene->wall[w].material == c->between[s];
         }
         if (is_element[0] && is_element[1]) {
-            add_contact(&f.pair, c);
+            add_contact(&f.pair, scene, c);
             f.bond_range = fmax(f.bond_range, bond_range(scene, c, r_min));
         }
         if ((is_element[0] && is_wall[1]) || (is_element[1] && is_wall[0])) {
-            add_contact(&f.wall, c);
+            add_contact(&f.wall, scene, c);
             f.bond_range = fmax(f.bond_range, bond_range(scene, c, 2 * r_min));
         }
     }
@@ -95,80 +100,54 @@ struct features features_of(
     f.orientation = is_wanted(scene, "orientation");
     f.spin |= f.materials || f.orientation || is_wanted(scene, "angular_velocity");
     const struct law_features *law[2] = {&f.pair, &f.wall};
-    for (int k = 0; k < 2; k++)
-        f.spin |= law[k]->tangential || law[k]->rolling_cdt || law[k]->rolling_epsd;
+    for (int k = 0; k < 2; k++) f.spin |= rotates(law[k]);
     for (int a = 0; a < 3; a++) f.periodic[a] = scene->domain.periodic[a];
     f.remove_outside = scene->domain.remove_outside;
     return f;
 }
 
-static bool rotates(const struct law_features *law)
-{
-    return law->tangential || law->rolling_cdt || law->rolling_epsd;
-}
+/* clang-format off */
+#define ROW(member, option) FEATURE_ROW(struct features, member, option)
+#define AXIS_ROW(name, axis, option) {name, option, offsetof(struct features, periodic[axis]), ~0}
+#define LAW_ROW(name, part, member, option, program) \
+    {name, option, offsetof(struct features, part.member), program},
+#define PAIR_ROW(member, flag, needed) \
+    LAW_ROW("pair_" #member, pair, member, "WITH_" #flag, FEATURES_PAIR)
+#define WALL_ROW(member, flag, needed) \
+    LAW_ROW("wall_" #member, wall, member, "WITH_" #flag, FEATURES_WALL)
 
+const struct feature_row features_table[] = {
+    {NULL, "REAL_IS_FLOAT", offsetof(struct features, real_is_float), ~0},
+    {NULL, "POSITION_IS_FLOAT", offsetof(struct features, position_is_float), ~0},
+    ROW(spin, "WITH_SPIN"),
+    ROW(sizes, "WITH_SIZES"),
+    ROW(materials, "WITH_MATERIALS"),
+    ROW(wall_table, "WITH_TABLE"),
+    {"energy", "WITH_ENERGY", offsetof(struct features, energy), FEATURES_PAIR | FEATURES_WALL},
+    ROW(orientation, "WITH_ORIENTATION"),
+    AXIS_ROW("periodic_x", 0, "WITH_PERIODIC_X"),
+    AXIS_ROW("periodic_y", 1, "WITH_PERIODIC_Y"),
+    AXIS_ROW("periodic_z", 2, "WITH_PERIODIC_Z"),
+    ROW(walls, "WITH_WALLS"),
+    ROW(plane, "WITH_PLANE"),
+    ROW(rectangle, "WITH_RECTANGLE"),
+    ROW(cylinder, "WITH_CYLINDER"),
+    ROW(triangle, "WITH_TRIANGLE"),
+    {"moving", "WITH_MOVING", offsetof(struct features, moving), FEATURES_WALL | FEATURES_BODY},
+    ROW(timed, NULL),
+    ROW(remove_outside, NULL),
+    CONTACT_FEATURES(PAIR_ROW)
+    CONTACT_FEATURES(WALL_ROW)
+    {NULL, NULL, 0, 0}};
+/* clang-format on */
+
+/* What moves elements knows of the laws only whether their results have torques. */
 char *features_options(const struct features *f, enum features_program program)
 {
-    struct law_features none = {0};
-    const struct law_features *law = program == FEATURES_PAIR   ? &f->pair
-                                     : program == FEATURES_WALL ? &f->wall
-                                                                : &none;
-    return fail_format(
-        "-DREAL_IS_FLOAT=%d -DPOSITION_IS_FLOAT=%d -DWITH_SPIN=%d -DWITH_SIZES=%d "
-        "-DWITH_MATERIALS=%d -DWITH_TABLE=%d "
-        "-DWITH_PERIODIC_X=%d -DWITH_PERIODIC_Y=%d -DWITH_PERIODIC_Z=%d -DWITH_WALLS=%d "
-        "-DWITH_PLANE=%d -DWITH_RECTANGLE=%d "
-        "-DWITH_CYLINDER=%d -DWITH_TRIANGLE=%d -DWITH_MOVING=%d -DWITH_ENERGY=%d "
-        "-DWITH_ORIENTATION=%d "
-        "-DWITH_LINEAR=%d -DWITH_HERTZ=%d -DWITH_NO_ATTRACTION=%d -DWITH_TANGENTIAL=%d "
-        "-DWITH_TANGENTIAL_DAMPING=%d "
-        "-DWITH_ROLLING_CDT=%d -DWITH_ROLLING_EPSD=%d -DWITH_BINDING=%d "
-        "-DWITH_PAIR_ROTATION=%d -DWITH_PAIR_ROLLING=%d -DWITH_WALL_ROTATION=%d",
-        f->real_is_float, f->position_is_float, f->spin, f->sizes, f->materials, f->wall_table,
-        f->periodic[0], f->periodic[1], f->periodic[2], f->walls, f->plane, f->rectangle,
-        f->cylinder, f->triangle, f->moving && program != FEATURES_PAIR,
-        f->energy && program != FEATURES_BODY, f->orientation, law->linear || !law->hertz,
-        law->hertz, law->no_attraction, law->tangential, law->tangential_damping, law->rolling_cdt,
-        law->rolling_epsd, law->binding, rotates(&f->pair),
-        f->pair.rolling_cdt || f->pair.rolling_epsd, rotates(&f->wall));
-}
-
-#define FEATURE(member)                                                                            \
-    {                                                                                              \
-#member, offsetof(struct features, member)                                                 \
-    }
-#define LAW_FEATURE(name, part, member)                                                            \
-    {                                                                                              \
-        name, offsetof(struct features, part) + offsetof(struct law_features, member)              \
-    }
-static const struct {
-    const char *name;
-    size_t at;
-} feature_table[] = {FEATURE(spin), FEATURE(sizes), FEATURE(materials), FEATURE(wall_table),
-    FEATURE(energy), FEATURE(orientation), {"periodic_x", offsetof(struct features, periodic)},
-    {"periodic_y", offsetof(struct features, periodic) + sizeof(bool)},
-    {"periodic_z", offsetof(struct features, periodic) + 2 * sizeof(bool)}, FEATURE(walls),
-    FEATURE(plane), FEATURE(rectangle), FEATURE(cylinder), FEATURE(triangle), FEATURE(moving),
-    FEATURE(timed), FEATURE(remove_outside), LAW_FEATURE("pair_linear", pair, linear),
-    LAW_FEATURE("pair_hertz", pair, hertz), LAW_FEATURE("pair_no_attraction", pair, no_attraction),
-    LAW_FEATURE("pair_tangential", pair, tangential),
-    LAW_FEATURE("pair_tangential_damping", pair, tangential_damping),
-    LAW_FEATURE("pair_rolling_cdt", pair, rolling_cdt),
-    LAW_FEATURE("pair_rolling_epsd", pair, rolling_epsd),
-    LAW_FEATURE("pair_binding", pair, binding), LAW_FEATURE("wall_linear", wall, linear),
-    LAW_FEATURE("wall_hertz", wall, hertz), LAW_FEATURE("wall_no_attraction", wall, no_attraction),
-    LAW_FEATURE("wall_tangential", wall, tangential),
-    LAW_FEATURE("wall_tangential_damping", wall, tangential_damping),
-    LAW_FEATURE("wall_rolling_cdt", wall, rolling_cdt),
-    LAW_FEATURE("wall_rolling_epsd", wall, rolling_epsd),
-    LAW_FEATURE("wall_binding", wall, binding), {NULL, 0}};
-
-const char *features_name(int i)
-{
-    return feature_table[i].name;
-}
-
-bool features_value(const struct features *features, int i)
-{
-    return *(const bool *)((const char *)features + feature_table[i].at);
+    char *rows = feature_table_options(features_table, f, program);
+    char *text = fail_format("%s -DWITH_PAIR_ROTATION=%d -DWITH_PAIR_ROLLING=%d "
+                             "-DWITH_WALL_ROTATION=%d",
+        rows, rotates(&f->pair), f->pair.rolling_cdt || f->pair.rolling_epsd, rotates(&f->wall));
+    free(rows);
+    return text;
 }

@@ -5,15 +5,17 @@
 #ifndef DEMOCLES_FEATURES_H
 #define DEMOCLES_FEATURES_H
 
+#include "device/feature_table.h"
 #include "generate.h"
+#include "kernels/contact/all_features.h"
 #include "scene/scene.h"
 #include "shape/walls.h"
 
 /* Parts of the contact laws, once for pairs of elements and once for elements at walls. */
+#define LAW_FEATURE(member, flag, needed) bool member;
 struct law_features {
     bool any; /* there is such a contact at all */
-    bool linear, hertz, no_attraction, tangential, tangential_damping, rolling_cdt, rolling_epsd,
-        binding;
+    CONTACT_FEATURES(LAW_FEATURE)
 };
 
 struct features {
@@ -37,11 +39,9 @@ struct features features_of(
 
 /* Build options of the program of pairs (FEATURES_PAIR), of walls, or of what moves elements and
  * builds lists; owned by the caller. */
-enum features_program { FEATURES_PAIR, FEATURES_WALL, FEATURES_BODY };
+enum features_program { FEATURES_PAIR = 1, FEATURES_WALL = 2, FEATURES_BODY = 4 };
 char *features_options(const struct features *features, enum features_program program);
 
-/* Names and values, for run.json and `check`: i = 0, 1, ... until the name is NULL. */
-const char *features_name(int i);
-bool features_value(const struct features *features, int i);
+extern const struct feature_row features_table[];
 
 #endif

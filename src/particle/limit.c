@@ -21,10 +21,10 @@ static void write_table(struct sim *s, struct limit *limit)
 {
     struct particle_run *run = s->particle;
     int n = s->scene->n_material;
-    size_t n_value = (size_t)n * (size_t)n * CONTACT_TABLE_MATERIAL;
+    size_t n_value = (size_t)n * (size_t)n * MATERIAL_WIDTH;
     double *row = fail_alloc(n_value * sizeof *row);
     for (int k = 0; k < n * n; k++)
-        limit_material(s->scene, k / n, k % n, row + k * CONTACT_TABLE_MATERIAL);
+        limit_material(s->scene, k / n, k % n, row + k * MATERIAL_WIDTH);
     buffer_reserve(&limit->table, n_value * particles_real(&run->features));
     reals_write(&limit->table, run->features.real_is_float, 0, n_value, row);
     free(row);
@@ -35,12 +35,9 @@ static char *options_of(const struct features *features)
 {
     struct features f = *features;
     f.energy = false;
-    f.wall.linear |= f.pair.linear;
-    f.wall.hertz |= f.pair.hertz;
-    f.wall.tangential |= f.pair.tangential;
-    f.wall.tangential_damping |= f.pair.tangential_damping;
-    f.wall.rolling_epsd |= f.pair.rolling_epsd;
-    f.wall.binding |= f.pair.binding;
+#define ADD(member, flag, needed) f.wall.member |= f.pair.member;
+    CONTACT_FEATURES(ADD)
+#undef ADD
     return features_options(&f, FEATURES_WALL);
 }
 

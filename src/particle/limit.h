@@ -29,7 +29,7 @@ struct limit_result limit_run(struct sim *s, double dt, double share);
 /* The share that suits the scene's beds; 1 without friction. */
 double limit_best_share(const struct scene *scene);
 
-/* Row [CONTACT_TABLE_MATERIAL] of contact_table_material without what never acts: tangential
+/* Row [MATERIAL_WIDTH] of contact_table_material without what never acts: tangential
  * springs without friction. */
 void limit_material(const struct scene *scene, int a, int b, double *row);
 

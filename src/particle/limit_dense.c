@@ -30,15 +30,14 @@ static double mass_of(const struct scene *scene, int material, double r)
 void limit_material(const struct scene *scene, int a, int b, double *row)
 {
     contact_table_material(scene, a, b, row);
-    if (!(row[4] > 0)) row[1] = row[3] = 0; /* mu; k_t, gamma_t */
+    if (!(row[MATERIAL_mu] > 0)) row[MATERIAL_k_t] = row[MATERIAL_gamma_t] = 0;
 }
 
 struct contact_material limit_material_of(const struct scene *scene, int a, int b)
 {
-    double row[CONTACT_TABLE_MATERIAL];
+    double row[MATERIAL_WIDTH];
     limit_material(scene, a, b, row);
-    return (struct contact_material){
-        row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8], (int)row[9]};
+    return material_load(row);
 }
 
 double limit_best_share(const struct scene *scene)

@@ -3,15 +3,7 @@
 #ifndef DEMOCLES_LIMIT_PARTS_H
 #define DEMOCLES_LIMIT_PARTS_H
 
-#define WITH_LINEAR 1
-#define WITH_HERTZ 1
-#define WITH_NO_ATTRACTION 1
-#define WITH_TANGENTIAL 1
-#define WITH_TANGENTIAL_DAMPING 1
-#define WITH_ROLLING_CDT 1
-#define WITH_ROLLING_EPSD 1
-#define WITH_BINDING 1
-#define WITH_ENERGY 1
+#include "kernels/contact/all_features.h"
 #include "kernels/contact/law_limit.h"
 #include "limit.h"
 

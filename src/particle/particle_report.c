@@ -9,6 +9,7 @@
 #include "energy.h"
 #include "comm/fail.h"
 #include "results/report.h"
+#include "run/record.h"
 
 /* Digest of the state as it lies on the device, in its own bits. Returns false if there are
  * NaNs. */
@@ -63,8 +64,7 @@ void particle_count(const struct sim *s, struct step_counts *counts)
 
 void particle_report_features(const struct sim *s, struct report *r)
 {
-    for (int i = 0; features_name(i); i++)
-        report_integer(r, features_name(i), features_value(&s->particle->features, i));
+    record_features(r, features_table, &s->particle->features);
 }
 
 void particle_report_energy(struct sim *s, struct report *r, bool observed)

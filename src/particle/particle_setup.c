@@ -41,7 +41,7 @@ static void set_parameters(
     int n = s->scene->n_material, n_row = by_table ? n * n : 1;
     int first_b =
         wall ? (s->scene->n_wall ? s->scene->wall[0].material : 0) : run->first->material[0];
-    int width = run->features.sizes ? CONTACT_TABLE_MATERIAL : CONTACT_TABLE_PARAMETER;
+    int width = run->features.sizes ? MATERIAL_WIDTH : PARAMETER_WIDTH;
     double *row = fail_alloc((size_t)n_row * (size_t)width * sizeof *row);
     double r = run->first->radius[0],
            m = 4.0 / 3.0 * M_PI * r * r * r * s->scene->material[run->first->material[0]].density;

@@ -151,6 +151,12 @@ static void print_digest(struct sim *s, const char *digest)
     else log_print(s->log, "digest %s", digest);
 }
 
+void record_features(struct report *report, const struct feature_row *row, const void *features)
+{
+    for (; feature_table_more(row); row++)
+        if (row->name) report_integer(report, row->name, feature_table_value(row, features));
+}
+
 bool record_write(struct sim *s, int exit_code, bool observed)
 {
     char digest[17] = "";

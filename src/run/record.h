@@ -3,11 +3,15 @@
 #ifndef DEMOCLES_RECORD_H
 #define DEMOCLES_RECORD_H
 
+#include "device/feature_table.h"
+#include "results/report.h"
 #include "sim.h"
 
 /* Collective. `observed`: the state on the device is one of full steps, so that energies and the
  * digest can be taken; if it then holds NaN, false is returned and the exit code in the record is
  * EXIT_NUMERICS. */
+/* Writes each feature that has a name as 0 or 1. */
+void record_features(struct report *report, const struct feature_row *row, const void *features);
 bool record_write(struct sim *s, int exit_code, bool observed);
 
 #endif

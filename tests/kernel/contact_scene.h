@@ -55,28 +55,12 @@ static inline void contact_scene_init(struct contact_scene *s)
 
 /* Row of all pairs of materials, as particle_setup.c makes them. width: MATERIAL_ROW or
  * PARAMETER_ROW reals. */
-enum { TABLE_WIDTH = WITH_SIZES ? CONTACT_TABLE_MATERIAL : CONTACT_TABLE_PARAMETER };
+enum { TABLE_WIDTH = WITH_SIZES ? MATERIAL_WIDTH : PARAMETER_WIDTH };
 static inline void contact_scene_row(
     const struct contact_scene *s, int a, int b, bool wall, double radius, double mass, double *row)
 {
     if (WITH_SIZES) contact_table_material(&s->scene, a, b, row);
     else contact_table_parameters(&s->scene, a, b, wall, radius, mass, STEP, row);
-}
-
-/* Such a row as numbers of the device. */
-static inline struct contact_material contact_scene_material(const double *row)
-{
-    struct contact_material c = {(real)row[0], (real)row[1], (real)row[2], (real)row[3],
-        (real)row[4], (real)row[5], (real)row[6], (real)row[7], (real)row[8], (int)row[9]};
-    return c;
-}
-
-static inline struct contact_parameters contact_scene_parameters(const double *row)
-{
-    struct contact_parameters p = {(real)row[0], (real)row[1], (real)row[2], (real)row[3],
-        (real)row[4], (real)row[5], (real)row[6], (real)row[7], (real)row[8], (real)row[9],
-        (real)row[10], (real)row[11], (real)row[12], (real)row[13], (int)row[14]};
-    return p;
 }
 
 /* Histories in memory and as the law has them. */

@@ -31,15 +31,8 @@ struct device *fixture_device(void);
  * walls. */
 static inline struct features fixture_features(void)
 {
-    struct law_features law = {.any = true,
-        .linear = WITH_LINEAR,
-        .hertz = WITH_HERTZ,
-        .no_attraction = WITH_NO_ATTRACTION,
-        .tangential = WITH_TANGENTIAL,
-        .tangential_damping = WITH_TANGENTIAL_DAMPING,
-        .rolling_cdt = WITH_ROLLING_CDT,
-        .rolling_epsd = WITH_ROLLING_EPSD,
-        .binding = WITH_BINDING};
+#define FIXTURE_FEATURE(member, flag, needed) .member = WITH_##flag,
+    struct law_features law = {.any = true, CONTACT_FEATURES(FIXTURE_FEATURE)};
     struct law_features none = {.any = false};
     return (struct features){.real_is_float = REAL_IS_FLOAT,
         .position_is_float = POSITION_IS_FLOAT,

@@ -119,10 +119,10 @@ static struct host_pair law_of(const struct test *t, int p)
         (preal)period[0], (preal)period[1], (preal)period[2]);
     struct contact_parameters q;
     if (WITH_SIZES)
-        q = contact_parameters_of(contact_scene_material(t->f.row[row]),
+        q = contact_parameters_of(material_load(t->f.row[row]),
             contact_pair_of(i->inverse_m, j->inverse_m, (real)i->radius, (real)j->radius),
             (real)STEP);
-    else q = contact_scene_parameters(t->f.row[row]);
+    else q = parameters_load(t->f.row[row]);
     host.k = contact_kinematics_pair(D, v3(i->v[0], i->v[1], i->v[2]),
         v3(j->v[0], j->v[1], j->v[2]), w_i, w_j, (real)i->radius, (real)j->radius, (real)STEP);
     host.h = contact_scene_history(t->state, t->history, CAPACITY, (size_t)p);

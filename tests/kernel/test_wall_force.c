@@ -172,9 +172,9 @@ static struct host_contact law_of(const struct test *t, int c)
     if (WITH_TABLE) row += t->wall_material[wall];
     struct contact_parameters q;
     if (WITH_SIZES)
-        q = contact_parameters_of(contact_scene_material(t->f.row[row]),
-            contact_pair_wall(e->inverse_m, own), (real)STEP);
-    else q = contact_scene_parameters(t->f.row[row]);
+        q = contact_parameters_of(
+            material_load(t->f.row[row]), contact_pair_wall(e->inverse_m, own), (real)STEP);
+    else q = parameters_load(t->f.row[row]);
     struct wall_geometry g = WITH_MOVING ? wall_geometry_moving(w, x, v, t->pose[wall], (real)STEP)
                                          : wall_geometry(w, x, v, (real)STEP);
     host.h = contact_scene_history(t->state, t->history, CAPACITY, (size_t)c);

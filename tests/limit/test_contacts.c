@@ -101,7 +101,7 @@ static void write_files(const char *precision)
 
 static struct contact_material material_of(const struct scene *scene, int a, int b)
 {
-    double row[CONTACT_TABLE_MATERIAL];
+    double row[MATERIAL_WIDTH];
     limit_material(scene, a, b, row);
     return (struct contact_material){
         row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8], (int)row[9]};
