@@ -16,12 +16,11 @@
 #define WITH_MOVING 0
 #endif
 /* Each width is asked for with W(TANGENTIAL), ...: whether there is that feature. A kernel's W is
- * FLAG, its own build options; the host has the features of a scene. The program of pairs has no
- * MOVING. */
-#define FLAG(feature) WITH_##feature
+ * FLAG (law_parameters.h), its own build options; the host has the features of a scene. The
+ * program of pairs has no MOVING. */
 #define ROLLING_OF(W) (W(ROLLING_CDT) || W(ROLLING_EPSD))
 #define ROTATION_OF(W) (W(TANGENTIAL) || ROLLING_OF(W))
-#define HISTORY_OF(W) (W(TANGENTIAL) || ROLLING_OF(W) || W(BINDING) || W(ENERGY))
+#define HISTORY_OF(W) (W(TANGENTIAL) || ROLLING_OF(W) || COHESION_OF(W) || W(ENERGY))
 #define THETA_OF(W) (W(TANGENTIAL) ? 3 : 0)
 #define DAMPING_N_OF(W) (THETA_OF(W) + (W(ROLLING_EPSD) ? 3 : 0))
 #define DAMPING_T_OF(W) (DAMPING_N_OF(W) + (W(ENERGY) ? 1 : 0))
@@ -127,7 +126,7 @@ LAW void ledger_add(struct contact_result r, __global double *ledger, size_t cap
     if (WITH_TANGENTIAL_DAMPING) ledger[LEDGER_TANGENTIAL * capacity + l] += (double)r.loss_t;
     if (WITH_TANGENTIAL) ledger[LEDGER_SLIDING * capacity + l] += (double)r.loss_s;
     if (WITH_ROLLING) ledger[LEDGER_ROLLING * capacity + l] += (double)r.loss_r;
-    if (WITH_BINDING) ledger[LEDGER_BONDS * capacity + l] += (double)r.loss_b;
+    if (WITH_COHESION) ledger[LEDGER_BONDS * capacity + l] += (double)r.loss_b;
     ledger[LEDGER_ELASTIC * capacity + l] = (double)r.elastic;
 }
 #endif

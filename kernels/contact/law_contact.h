@@ -9,7 +9,6 @@
 #ifndef DEMOCLES_LAW_CONTACT_H
 #define DEMOCLES_LAW_CONTACT_H
 
-#include "law_binding.h"
 #include "law_kinematics.h"
 #include "law_normal.h"
 #include "law_parameters.h"
@@ -17,15 +16,11 @@
 #include "law_slider.h"
 #include "law_tangential.h"
 
-/* Bits of contact_history.state. */
-#define CONTACT_TOUCHING 1
-#define CONTACT_BONDED 2
-
 /* What a contact remembers, in the orientation i to j; all zero once the contact has ended. */
 struct contact_history {
     vec3 xi;        /* WITH_TANGENTIAL: friction spring [m] */
     vec3 theta;     /* WITH_ROLLING_EPSD: rolling angle [rad] */
-    int state;      /* WITH_TANGENTIAL, WITH_ROLLING_EPSD or WITH_BINDING: CONTACT_ bits */
+    int state;      /* WITH_TANGENTIAL, WITH_ROLLING_EPSD or WITH_COHESION: CONTACT_ bits */
     real damping_n; /* WITH_ENERGY: dashpot part of F_n at t^n [N] */
     vec3 damping_t; /* WITH_ENERGY and WITH_TANGENTIAL_DAMPING: of F_t [N] */
     vec3 damping_r; /* WITH_ENERGY and rolling: of M; CDT: all of M [N m] */
@@ -47,13 +42,9 @@ struct contact_result {
 
 /* The contact on its way through the step. */
 struct contact_step {
-    int alive, bonded, was_bonded;
-    int broke;   /* the bond did, in this step */
-    real spring; /* elastic part of F_n */
-    real force_n;
+    struct normal_step normal;
     real cap_t;
     vec3 trial_t, trial_r;
-    struct normal_factors factors;
     struct slider_carry carry;
     struct slider slide, roll; /* friction; EPSD */
 };
@@ -68,23 +59,12 @@ LAW struct contact_step contact_begin(
     struct contact_kinematics k, struct contact_parameters p, real dt, int state)
 {
     struct contact_step s;
-    int touching = k.delta > 0;
-    real way = r_abs(k.v_n) * dt;
-    real steps = normal_steps(k.delta, way);
-    real spring, part;
+    real part;
 
-    s.was_bonded = WITH_BINDING && (state & CONTACT_BONDED) != 0;
-    s.factors = normal_factors_of(k.delta, way, steps, s.was_bonded, p);
-    spring = p.k_n * s.factors.spring * k.delta;
-    s.bonded = binding_holds(s.was_bonded, k.delta, spring, p);
-    s.broke = s.was_bonded && !s.bonded;
-    s.alive = touching || s.bonded;
-    s.factors.damper = s.broke ? (real)0 : s.factors.damper;
-    s.spring = s.alive ? spring : (real)0;
-    s.force_n = normal_force(s.spring, k.v_n, s.factors, p);
-    part = state != 0 ? (real)1 : r_clamp(steps, (real)0, (real)1);
-    s.carry = slider_carry_of(k, normal_is_hertz(p), s.factors.spring, part * dt, dt);
-    s.cap_t = tangential_cap(s.force_n, s.bonded, p);
+    s.normal = normal_step_of(k.delta, k.v_n, dt, state, p);
+    part = state != 0 ? (real)1 : r_clamp(s.normal.steps, (real)0, (real)1);
+    s.carry = slider_carry_of(k, p, s.normal.factors.spring, part * dt, dt);
+    s.cap_t = tangential_cap(s.normal.force, s.normal.bonded, p);
     s.trial_t = s.trial_r = v3(0, 0, 0);
     s.slide.spring = s.slide.force = s.roll.spring = s.roll.force = v3(0, 0, 0);
     s.slide.slips = s.roll.slips = 0;
@@ -105,24 +85,24 @@ LAW void contact_ledger(struct contact_kinematics k, struct contact_parameters p
     struct contact_step s, vec3 moment, struct contact_history *h, struct contact_result *r)
 {
     /* without friction there is no spring */
-    real stiffness_t = p.mu > 0 ? p.k_t * s.factors.spring : (real)0;
-    real stiffness_r = p.k_r * s.factors.spring;
-    real damping_n = s.force_n - s.spring;
+    real stiffness_t = p.mu > 0 ? p.k_t * s.normal.factors.spring : (real)0;
+    real stiffness_r = p.k_r * s.normal.factors.spring;
+    real damping_n = s.normal.force - s.normal.spring;
     real half_dt = (real)0.5 * dt;
     /* springs start from the touch, kicks take the whole step */
     real before_touch = (real)0.5 * (dt - s.carry.time);
 
-    r->elastic = normal_energy(s.spring, k.delta, p);
+    r->elastic = s.normal.alive ? normal_energy(normal_spring_of(k.delta, p), k.delta, p) : (real)0;
     r->loss_n = half_dt * (h->damping_n + damping_n) * k.v_n_half;
     h->damping_n = damping_n;
     if (WITH_TANGENTIAL) {
         real stiffness_old = p.mu > 0 ? p.k_t * s.carry.before : (real)0;
-        real lost = slider_loss(stiffness_old, h->xi, s.alive ? stiffness_t : (real)0, s.trial_t,
-            s.slide.spring, k.v_t, s.carry);
+        real lost = slider_loss(stiffness_old, h->xi, s.normal.alive ? stiffness_t : (real)0,
+            s.trial_t, s.slide.spring, k.v_t, s.carry);
         lost -= s.slide.slips ? before_touch * v3_dot(s.slide.force, k.v_t) : (real)0;
         r->elastic += (real)0.5 * stiffness_t * v3_dot(s.slide.spring, s.slide.spring);
-        r->loss_s = s.broke ? (real)0 : lost;
-        r->loss_b = s.broke ? lost : (real)0;
+        r->loss_s = s.normal.broke ? (real)0 : lost;
+        r->loss_b = s.normal.broke ? lost : (real)0;
         if (WITH_TANGENTIAL_DAMPING) {
             vec3 damping =
                 contact_select(!s.slide.slips, v3_fma(stiffness_t, s.slide.spring, s.slide.force));
@@ -130,17 +110,17 @@ LAW void contact_ledger(struct contact_kinematics k, struct contact_parameters p
             h->damping_t = damping;
         }
     }
-    if (WITH_BINDING) {
+    if (WITH_COHESION) {
         real before = r_fma(-k.v_n_half, dt, k.delta); /* overlap at t^n */
-        real spring = p.k_n * s.carry.before * before;
-        real lost = normal_energy(spring, before, p) + half_dt * spring * k.v_n_half;
-        r->loss_b = s.broke ? r->loss_b + lost : r->loss_b;
+        struct normal_spring spring = normal_spring_of(before, p);
+        real lost = normal_energy(spring, before, p) + half_dt * spring.force * k.v_n_half;
+        r->loss_b = s.normal.broke ? r->loss_b + lost : r->loss_b;
     }
     if (KINEMATICS_ROLLING) {
         vec3 damping = moment;
         if (WITH_ROLLING_EPSD) {
             real lost = slider_loss(p.k_r * s.carry.before, h->theta,
-                s.alive ? stiffness_r : (real)0, s.trial_r, s.roll.spring, k.w_r, s.carry);
+                s.normal.alive ? stiffness_r : (real)0, s.trial_r, s.roll.spring, k.w_r, s.carry);
             /* CDT: spring 0 */
             damping = contact_select(
                 !s.roll.slips || !contact_is_epsd(p), v3_fma(stiffness_r, s.roll.spring, moment));
@@ -163,26 +143,29 @@ LAW struct contact_result contact_law(
 
     r.couple = r.moment = v3(0, 0, 0);
     r.elastic = r.loss_n = r.loss_t = r.loss_s = r.loss_r = r.loss_b = 0;
-    r.force = v3_scale(-s.force_n, k.n);
+    r.force = v3_scale(-s.normal.force, k.n);
     if (WITH_TANGENTIAL) {
-        s.trial_t = contact_select(s.alive && p.mu > 0, slider_trial(h->xi, k.v_t, s.carry, k.n));
-        s.slide = tangential_force(s.trial_t, k.v_t_end, s.cap_t, s.factors, p);
-        r.force = v3_fma(-s.force_n, k.n, s.slide.force);
+        s.trial_t =
+            contact_select(s.normal.alive && p.mu > 0, slider_trial(h->xi, k.v_t, s.carry, k.n));
+        s.slide = tangential_force(s.trial_t, k.v_t_end, s.cap_t, s.normal.factors, p);
+        r.force = v3_fma(-s.normal.force, k.n, s.slide.force);
         r.couple = v3_cross(k.n, s.slide.force);
     }
-    if (WITH_ROLLING_CDT) r.moment = rolling_cdt(k.w_r_end, rolling_cap(s.force_n, p), p);
+    if (WITH_ROLLING_CDT) r.moment = rolling_cdt(k.w_r_end, rolling_cap(s.normal.force, p), p);
     if (WITH_ROLLING_EPSD) {
         int epsd = contact_is_epsd(p);
-        s.trial_r = contact_select(s.alive && epsd, slider_trial(h->theta, k.w_r, s.carry, k.n));
-        s.roll = rolling_epsd(s.trial_r, k.w_r_end, rolling_cap(s.force_n, p), s.factors, p);
+        s.trial_r =
+            contact_select(s.normal.alive && epsd, slider_trial(h->theta, k.w_r, s.carry, k.n));
+        s.roll =
+            rolling_epsd(s.trial_r, k.w_r_end, rolling_cap(s.normal.force, p), s.normal.factors, p);
         r.moment.x = epsd ? s.roll.force.x : r.moment.x;
         r.moment.y = epsd ? s.roll.force.y : r.moment.y;
         r.moment.z = epsd ? s.roll.force.z : r.moment.z;
     }
     if (WITH_ENERGY) contact_ledger(k, p, dt, s, r.moment, h, &r);
-    h->xi = contact_select(s.alive, s.slide.spring);
-    h->theta = contact_select(s.alive, s.roll.spring);
-    h->state = (k.delta > 0 ? CONTACT_TOUCHING : 0) | (s.bonded ? CONTACT_BONDED : 0);
+    h->xi = contact_select(s.normal.alive, s.slide.spring);
+    h->theta = contact_select(s.normal.alive, s.roll.spring);
+    h->state = (k.delta > 0 ? CONTACT_TOUCHING : 0) | (s.normal.bonded ? CONTACT_BONDED : 0);
     return r;
 }
 

@@ -26,7 +26,7 @@
 #ifndef DEMOCLES_LAW_LIMIT_H
 #define DEMOCLES_LAW_LIMIT_H
 
-#include "law_parameters.h"
+#include "law_normal.h"
 #include "common/vec.h"
 
 /* What rounding may take from the bound. */
@@ -135,46 +135,9 @@ LAW real limit_largest(struct limit_matrix a, int steps)
     return trace * x;
 }
 
-/* q^(1/5) from above: 1/5 = 3/16 (1 + 1/16 + 1/256 + ...) by square roots, then a Newton step,
- * which ends above the root of a convex function. */
-LAW real limit_fifth_root(real q)
-{
-    real eighth = r_sqrt(r_sqrt(r_sqrt(q)));
-    real first = eighth * r_sqrt(eighth);
-    real second = r_sqrt(r_sqrt(r_sqrt(r_sqrt(first))));
-    real y = first * second * r_sqrt(r_sqrt(r_sqrt(r_sqrt(second))));
-    real y4 = y * y * y * y;
-    return y4 > 0 ? (real)0.2 * ((real)4 * y + q / y4) : (real)0;
-}
-
-LAW int limit_is_hertz(struct contact_material c)
-{
-    return WITH_HERTZ && (!WITH_LINEAR || (c.law & CONTACT_HERTZ) != 0);
-}
-
 LAW real limit_r_star(struct limit_ends e)
 {
     return e.r_j > 0 ? e.r_i * e.r_j / (e.r_i + e.r_j) : e.r_i;
-}
-
-/* Whether the contact acts: touches, or is near enough to be bonded. */
-LAW int limit_acts(struct contact_material c, struct limit_ends e, real delta)
-{
-    real apart = r_abs(delta);
-    real spring =
-        limit_is_hertz(c) ? c.k_n * r_sqrt(limit_r_star(e) * apart) * apart : c.k_n * apart;
-    return delta > 0 || (WITH_BINDING && c.f_b > 0 && spring <= c.f_b);
-}
-
-/* Root of the overlap at which a Hertz contact is taken, since it stiffens: where the two bodies
- * alone would come to rest,
- *     (2/5) K delta_m^(5/2) = (2/5) K |delta|^(5/2) + m* v_n^2/2. */
-LAW real limit_overlap_root(real stiffness, real m_star, real delta, real v_n)
-{
-    real now = r_sqrt(r_abs(delta));
-    real later =
-        limit_fifth_root(now * now * now * now * now + (real)1.25 * m_star * v_n * v_n / stiffness);
-    return r_max(now, later);
 }
 
 /* delta [m], v_n: approach speed [m/s], of receding bodies without a bond 0 counts; dt [s] for the
@@ -183,14 +146,12 @@ LAW struct limit_contact limit_contact_of(
     struct contact_material c, struct limit_ends e, real delta, real v_n, real dt)
 {
     struct limit_contact k;
-    int hertz = limit_is_hertz(c);
+    int hertz = material_is_hertz(c);
     real inverse_m = e.w_i + e.w_j;
     real m_star = (real)1 / inverse_m;
     real r_star = limit_r_star(e);
     real size = hertz ? r_sqrt(r_star) : (real)1;
-    real root = hertz ? limit_overlap_root(
-                            size * c.k_n, m_star, delta, v_n > 0 || c.f_b > 0 ? v_n : (real)0)
-                      : (real)1;
+    real root = hertz ? normal_deepest(c, r_star, m_star, delta, v_n) : (real)1;
     real damper = r_sqrt(size * m_star * root);
     real per_radius = e.r_j > 0 ? (real)0.5 / r_min(e.r_i, e.r_j) : (real)1 / e.r_i;
     /* bonds that are apart; spheres that have swallowed a smaller one */

@@ -19,14 +19,33 @@
  *           The latter is written without a division, (1 - 0.011 (2 - a)^4) for a < 2, and 4/5 is
  *           taken as 0.792: with these two numbers the sum over the steps of a linear onset equals
  *           the integral within 0.005 steps at any phase (0.32 without the weight).
- *   So the dashpot acts up to |v_n| dt/2 before the touch. A bond has passed its onset. */
+ *   So the dashpot acts up to |v_n| dt/2 before the touch. A bond has passed its onset.
+ *
+ * Whoever adds a normal law adds it here: the spring and its energy, whether it holds beyond the
+ * touch, and how stiff an impact can make it, for the bound of law_limit.h. */
 #ifndef DEMOCLES_LAW_NORMAL_H
 #define DEMOCLES_LAW_NORMAL_H
 
+#include "law_binding.h"
 #include "law_kinematics.h"
 #include "law_parameters.h"
 
 #define NORMAL_TINY ((real)1e-30) /* keeps 0/0 away; far below any |v_n| dt that matters */
+
+/* Laws that hold beyond the touch: W as in contact_memory.h. */
+#define COHESION_OF(W) W(BINDING)
+#define WITH_COHESION COHESION_OF(FLAG)
+
+/* Bits of contact_history.state. */
+#define CONTACT_TOUCHING 1
+#define CONTACT_BONDED 2
+
+/* The spring at an overlap, whether or not there is contact. */
+struct normal_spring {
+    real s;     /* what all springs and dashpots of the contact follow: 1 or |delta|^(1/2) */
+    real force; /* k_n s delta [N] */
+    int apart;  /* beyond the point without load, where friction that follows the load is lost */
+};
 
 /* Overlap dependence shared by all springs and dashpots of the contact. */
 struct normal_factors {
@@ -36,29 +55,60 @@ struct normal_factors {
     real damp_t; /* 1/(1 + 3.5 gamma_t dt/(2 m*)) */
 };
 
+/* One step along the normal. */
+struct normal_step {
+    int alive, bonded, was_bonded;
+    int broke;   /* the bond did, in this step */
+    real steps;  /* overlap/way of a step: how many steps ago the surfaces met */
+    real spring; /* elastic part of the force while the contact lives, else 0 [N] */
+    real force;  /* > 0 repels [N] */
+    struct normal_factors factors;
+};
+
 LAW int normal_is_hertz(struct contact_parameters p)
 {
     return WITH_HERTZ && (!WITH_LINEAR || (p.law & CONTACT_HERTZ) != 0);
 }
 
-/* way: |v_n| dt [m]. Returns delta/way: how many steps ago the surfaces met. */
-LAW real normal_steps(real delta, real way) { return delta / (way + NORMAL_TINY); }
+LAW struct normal_spring normal_spring_of(real delta, struct contact_parameters p)
+{
+    struct normal_spring n;
+    n.s = 1;
+    if (WITH_HERTZ) n.s = normal_is_hertz(p) ? r_sqrt(r_abs(delta)) : (real)1;
+    n.force = p.k_n * n.s * delta;
+    n.apart = delta < 0;
+    return n;
+}
 
-/* way, steps: as above; was_bonded: at t^n. */
+/* Energy of the spring [J]: k delta^2/2 or (2/5) K |delta|^(5/2). */
+LAW real normal_energy(struct normal_spring n, real delta, struct contact_parameters p)
+{
+    return (normal_is_hertz(p) ? (real)0.4 : (real)0.5) * n.force * delta;
+}
+
+/* Whether the contact holds at t^{n+1}, so that it may go on beyond the touch. */
+LAW int normal_holds(int was_bonded, real delta, real spring, struct contact_parameters p)
+{
+    return binding_holds(was_bonded, delta, spring, p);
+}
+
+/* How much more than F_n presses the surfaces of a contact that holds together, for friction. */
+LAW real normal_cohesion(struct contact_parameters p) { return p.f_b; }
+
+/* delta [m]; s at it; way: |v_n| dt [m]; steps: delta/way; was_bonded: at t^n. */
 LAW struct normal_factors normal_factors_of(
-    real delta, real way, real steps, int was_bonded, struct contact_parameters p)
+    real delta, real s, real way, real steps, int was_bonded, struct contact_parameters p)
 {
     struct normal_factors f;
     real onset = was_bonded ? (real)1 : r_clamp((real)0.5 + steps, (real)0, (real)1);
     int hertz = normal_is_hertz(p);
 
-    f.spring = 1;
+    f.spring = s;
     f.damper = onset;
     f.damp_n = p.damp_n;
     f.damp_t = WITH_TANGENTIAL_DAMPING ? p.damp_t : (real)1;
     if (WITH_HERTZ) { /* one division for both */
         int entering = onset < 1;
-        real s = r_sqrt(r_abs(delta));
         real late = was_bonded ? (real)0 : r_clamp((real)2 - steps, (real)0, (real)1.5);
         real weight = entering ? (real)0.792 * onset
                                : r_fma((real)-0.011 * late * late, late * late, (real)1);
@@ -66,7 +116,6 @@ LAW struct normal_factors normal_factors_of(
         real one_n = r_fma(p.centring_n, damper, (real)1);
         real one_t = WITH_TANGENTIAL_DAMPING ? r_fma(p.centring_t, damper, (real)1) : (real)1;
         real both = (real)1 / (one_n * one_t);
-        f.spring = hertz ? s : f.spring;
         f.damper = hertz ? damper : f.damper;
         f.damp_n = hertz ? both * one_t : f.damp_n;
         /* without dashpot 1 to the last bit */
@@ -75,7 +124,7 @@ LAW struct normal_factors normal_factors_of(
     return f;
 }
 
-/* F_n > 0 repels [N]. spring: k_n s delta while the contact lives, else 0. */
+/* F_n > 0 repels [N]. spring: as in struct normal_step. */
 LAW real normal_force(real spring, real v_n, struct normal_factors f, struct contact_parameters p)
 {
     real force = r_fma(p.gamma_n * f.damper, v_n, spring) * f.damp_n;
@@ -86,10 +135,57 @@ LAW real normal_force(real spring, real v_n, struct normal_factors f, struct con
     return force;
 }
 
-/* Energy of the spring [J]: k delta^2/2 or (2/5) K |delta|^(5/2). */
-LAW real normal_energy(real spring, real delta, struct contact_parameters p)
+/* state: of the contact at t^n. */
+LAW struct normal_step normal_step_of(
+    real delta, real v_n, real dt, int state, struct contact_parameters p)
 {
-    return (normal_is_hertz(p) ? (real)0.4 : (real)0.5) * spring * delta;
+    struct normal_step n;
+    struct normal_spring spring = normal_spring_of(delta, p);
+    real way = r_abs(v_n) * dt;
+
+    n.was_bonded = WITH_COHESION && (state & CONTACT_BONDED) != 0;
+    n.steps = delta / (way + NORMAL_TINY);
+    n.factors = normal_factors_of(delta, spring.s, way, n.steps, n.was_bonded, p);
+    n.bonded = normal_holds(n.was_bonded, delta, spring.force, p);
+    n.broke = n.was_bonded && !n.bonded;
+    n.alive = delta > 0 || n.bonded;
+    n.factors.damper = n.broke ? (real)0 : n.factors.damper;
+    n.spring = n.alive ? spring.force : (real)0;
+    n.force = normal_force(n.spring, v_n, n.factors, p);
+    return n;
+}
+
+/* Whether two materials act on each other at this overlap: touch, or are near enough to hold. */
+LAW int normal_acts(struct contact_material c, real r_star, real delta)
+{
+    real apart = r_abs(delta);
+    real spring = material_is_hertz(c) ? c.k_n * r_sqrt(r_star * apart) * apart : c.k_n * apart;
+    return delta > 0 || (WITH_BINDING && c.f_b > 0 && spring <= c.f_b);
+}
+
+/* q^(1/5) from above: 1/5 = 3/16 (1 + 1/16 + 1/256 + ...) by square roots, then a Newton step,
+ * which ends above the root of a convex function. */
+LAW real normal_fifth_root(real q)
+{
+    real eighth = r_sqrt(r_sqrt(r_sqrt(q)));
+    real first = eighth * r_sqrt(eighth);
+    real second = r_sqrt(r_sqrt(r_sqrt(r_sqrt(first))));
+    real y = first * second * r_sqrt(r_sqrt(r_sqrt(r_sqrt(second))));
+    real y4 = y * y * y * y;
+    return y4 > 0 ? (real)0.2 * ((real)4 * y + q / y4) : (real)0;
+}
+
+/* s where the two bodies alone would come to rest, for a bound: a Hertz contact stiffens with
+ * depth,
+ *     (2/5) K delta_m^(5/2) = (2/5) K |delta|^(5/2) + m* v_n^2/2. */
+LAW real normal_deepest(struct contact_material c, real r_star, real m_star, real delta, real v_n)
+{
+    real stiffness = r_sqrt(r_star) * c.k_n;
+    real speed = v_n > 0 || c.f_b > 0 ? v_n : (real)0; /* a bond turns receding bodies round */
+    real now = r_sqrt(r_abs(delta));
+    real later = normal_fifth_root(
+        now * now * now * now * now + (real)1.25 * m_star * speed * speed / stiffness);
+    return material_is_hertz(c) ? r_max(now, later) : (real)1;
 }
 
 #endif

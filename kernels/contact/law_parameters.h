@@ -15,6 +15,8 @@
 
 #include "common/types.h"
 
+#define FLAG(feature) WITH_##feature
+
 /* Bits of contact_material.law and contact_parameters.law. */
 #define CONTACT_HERTZ 1         /* Hertz-Mindlin, else linear */
 #define CONTACT_NO_ATTRACTION 2 /* the dashpot may not pull: F_n = max(F_n, 0) */
@@ -93,6 +95,11 @@ LAW struct contact_parameters parameters_load(CONTACT_ROW *row)
     return p;
 }
 
+LAW int material_is_hertz(struct contact_material c)
+{
+    return WITH_HERTZ && (!WITH_LINEAR || (c.law & CONTACT_HERTZ) != 0);
+}
+
 /* k_n [N/m], damping ratios z [1], k_t/k_n [1]. Friction, binding and rolling are off. */
 LAW struct contact_material contact_material_linear(
     real k_n, real z_n, real stiffness_ratio, real z_t)
@@ -160,7 +167,7 @@ LAW struct contact_parameters contact_parameters_of(
     struct contact_material c, struct contact_pair s, real dt)
 {
     struct contact_parameters p;
-    real size = WITH_HERTZ && (!WITH_LINEAR || c.law & CONTACT_HERTZ) ? r_sqrt(s.r_star) : (real)1;
+    real size = material_is_hertz(c) ? r_sqrt(s.r_star) : (real)1;
     real root = r_sqrt(size * s.m_star);
     real half_dt = (real)0.5 * dt * size / (root * root); /* dt/(2 m*) */
     real both;

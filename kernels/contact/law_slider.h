@@ -24,8 +24,7 @@
 #ifndef DEMOCLES_LAW_SLIDER_H
 #define DEMOCLES_LAW_SLIDER_H
 
-#include "law_kinematics.h"
-#include "law_parameters.h"
+#include "law_normal.h"
 
 #define SLIDER_TINY ((real)1e-30) /* keeps 0/0 away */
 
@@ -43,9 +42,9 @@ struct slider {
     int slips;
 };
 
-/* s: overlap factor at t^{n+1}, delta^(1/2) for Hertz; time: part of dt in contact [s]. */
+/* s: overlap factor at t^{n+1} (struct normal_spring); time: part of dt in contact [s]. */
 LAW struct slider_carry slider_carry_of(
-    struct contact_kinematics k, int hertz, real s, real time, real dt)
+    struct contact_kinematics k, struct contact_parameters p, real s, real time, real dt)
 {
     struct slider_carry c;
 
@@ -53,12 +52,12 @@ LAW struct slider_carry slider_carry_of(
     c.time = time;
     c.keep = c.gain = c.before = 1;
     if (WITH_HERTZ) {
+        int hertz = normal_is_hertz(p);
         real old = r_fma(-k.v_n_half, dt, k.delta); /* overlap at t^n */
-        real before = r_sqrt(r_abs(old));
-        real ratio = before / r_max(s, SLIDER_TINY);
-        /* unloaded in between: the force was lost */
-        real keep = (old < 0) != (k.delta < 0) ? (real)0 : r_min(ratio, (real)1);
-        c.before = hertz ? before : (real)1;
+        struct normal_spring before = normal_spring_of(old, p), now = normal_spring_of(k.delta, p);
+        real ratio = before.s / r_max(s, SLIDER_TINY);
+        real keep = before.apart != now.apart ? (real)0 : r_min(ratio, (real)1);
+        c.before = before.s;
         c.keep = hertz ? keep : (real)1;
         c.gain = hertz ? r_fma(keep, keep, keep + (real)4) * ((real)1 / (real)6) : (real)1;
     }

@@ -16,7 +16,7 @@
 LAW real tangential_cap(real force_n, int bonded, struct contact_parameters p)
 {
     real load = force_n;
-    if (WITH_BINDING) load = bonded ? load + p.f_b : load;
+    if (WITH_COHESION) load = bonded ? load + normal_cohesion(p) : load;
     return p.mu * r_max(load, (real)0);
 }
 

@@ -56,7 +56,7 @@ LAW struct limit_sums limit_add_pair(struct limit_sums s, struct limit_element a
     ends.w_j = WITH_SIZES ? b.w : a.w; /* what is the same for all contacts leaves the loop */
     ends.r_i = a.r;
     ends.r_j = WITH_SIZES ? b.r : a.r;
-    if (!limit_acts(c, ends, delta)) return s;
+    if (!normal_acts(c, limit_r_star(ends), delta)) return s;
     return limit_sums_add(
         s, limit_contact_of(c, ends, delta, v3_dot(v3_sub(a.v, b.v), n), dt), ends, n, share);
 }
@@ -84,7 +84,7 @@ LAW struct limit_sums limit_add_wall(struct limit_sums s, struct limit_element a
     ends.w_i = a.w;
     ends.r_i = a.r;
     ends.w_j = ends.r_j = 0;
-    if (!limit_acts(c, ends, delta)) return s;
+    if (!normal_acts(c, limit_r_star(ends), delta)) return s;
     return limit_sums_add(s, limit_contact_of(c, ends, delta, v3_dot(v, n), dt), ends, n, share);
 }
 #endif

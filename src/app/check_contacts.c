@@ -6,6 +6,7 @@
 #include <stdio.h>
 
 #include "laws/restitution.h"
+#include "particle/contact_table.h"
 
 /* Radii of the elements of one material. */
 struct sizes {
@@ -45,9 +46,10 @@ static double young_star(const struct material *a, const struct material *b)
 /* Contact duration of the smallest particles. Linear: pi/(w sqrt(1 - z^2)), w^2 = k_n/m*, infinite
  * for z >= 1. Hertz: 2.94328 delta_max/v without damping, for v = 1 m/s, with
  * delta_max = (5 m* v^2/(4 K))^(2/5), K = (4/3) E* sqrt(R*). */
-static void print_impact(
-    const struct contact *c, const char *who, double m_star, double r_star, double e_star)
+static void print_impact(const struct scene *scene, const struct contact *c, const char *who,
+    double m_star, double r_star, double e_star)
 {
+    double row[MATERIAL_WIDTH];
     double z = c->damping_ratio;
     printf("        %s: m* %.4g kg, contact duration ", who, m_star);
     if (c->normal_law == NORMAL_HERTZ) {
@@ -58,6 +60,11 @@ static void print_impact(
     } else {
         printf("none: overdamped (no finite contact duration)\n");
     }
+    contact_table_material(scene, c->between[0], c->between[1], row);
+    double reach = contact_table_reach(row, r_star);
+    if (reach > 0)
+        printf("            pull-off force %.4g N, acts up to a gap of %.4g m\n",
+            contact_table_pull(row, r_star), reach);
 }
 
 static void print_normal(const struct contact *c, double e_star)
@@ -85,12 +92,6 @@ static void print_rest(const struct contact *c)
     if (c->rolling == ROLLING_EPSD)
         printf("        rolling: elastic-plastic, friction %.4g, damping ratio %.4g\n",
             c->rolling_friction, c->rolling_damping);
-    if (c->binding_force > 0) {
-        printf("        binding: pull-off force %.4g N", c->binding_force);
-        if (c->normal_law == NORMAL_LINEAR)
-            printf(", acts up to a gap of %.4g m", c->binding_force / c->stiffness);
-        printf("\n");
-    }
 }
 
 void check_contacts(const struct scene *scene, const struct elements_host *elements)
@@ -115,10 +116,10 @@ void check_contacts(const struct scene *scene, const struct elements_host *eleme
         print_normal(c, e_star);
         print_rest(c);
         if (both)
-            print_impact(c, "smallest particles", m[0] * m[1] / (m[0] + m[1]),
+            print_impact(scene, c, "smallest particles", m[0] * m[1] / (m[0] + m[1]),
                 r[0] * r[1] / (r[0] + r[1]), e_star);
         for (int side = 0; side < (a == b ? 1 : 2); side++)
             if (wall[side])
-                print_impact(c, "smallest particle at a wall", m[side], r[side], e_star);
+                print_impact(scene, c, "smallest particle at a wall", m[side], r[side], e_star);
     }
 }

@@ -1,6 +1,10 @@
 #include "contact_table.h"
 
+#include <float.h>
+#include <math.h>
 #include <string.h>
+
+#include "kernels/contact/law_normal.h"
 
 static const struct contact *find(const struct scene *scene, int a, int b)
 {
@@ -65,6 +69,37 @@ void contact_table_parameters(const struct scene *scene, int a, int b, bool wall
     struct contact_parameters p = contact_parameters_of(material_of(scene, c), s, dt);
     const double value[PARAMETER_WIDTH] = {CONTACT_PARAMETERS(VALUE)};
     memcpy(row, value, sizeof value);
+}
+
+/* By bisection: the law says whether it acts at a gap, and does so at every smaller one. */
+double contact_table_reach(const double *row, double r_star)
+{
+    struct contact_material c = material_load(row);
+    double near = 0, far = r_star;
+    if (!normal_acts(c, r_star, -DBL_MIN)) return 0;
+    while (normal_acts(c, r_star, -far)) far *= 2;
+    for (int k = 0; k < 200; k++) {
+        double middle = 0.5 * (near + far);
+        if (normal_acts(c, r_star, -middle)) near = middle;
+        else far = middle;
+    }
+    return far;
+}
+
+/* The largest pull on the way out, by golden section: it has one maximum. The mass of the pair has
+ * no part in springs. */
+double contact_table_pull(const double *row, double r_star)
+{
+    const double golden = 0.5 * (sqrt(5) - 1);
+    struct contact_pair pair = {1, r_star, 1};
+    struct contact_parameters p = contact_parameters_of(material_load(row), pair, 1);
+    double from = contact_table_reach(row, r_star), to = 0;
+    for (int k = 0; k < 100; k++) {
+        double a = from + golden * (to - from), b = to + golden * (from - to);
+        if (normal_spring_of(-a, p).force < normal_spring_of(-b, p).force) to = b;
+        else from = a;
+    }
+    return fmax(0, -normal_spring_of(-from, p).force);
 }
 
 static void set_real(struct launch *launch, const char *name, double value)

@@ -19,6 +19,12 @@ void contact_table_material(const struct scene *scene, int a, int b, double *row
 void contact_table_parameters(const struct scene *scene, int a, int b, bool wall, double radius,
     double mass, double dt, double *row);
 
+/* What a row of contact_table_material says of two elements, or one at a wall, of effective radius
+ * r_star [m]: how far apart they still hold each other [m], and the force that it takes to part
+ * them slowly [N]; 0 where nothing holds them. */
+double contact_table_reach(const double *row, double r_star);
+double contact_table_pull(const double *row, double r_star);
+
 /* Sets the arguments k_n, gamma_n, ... law of a force kernel from a row of parameters. */
 void contact_table_set(struct launch *launch, const double *row);
 

@@ -27,30 +27,28 @@ static void add_contact(
 #undef ADD
 }
 
-/* F_b/k_n, or (F_b/K)^(2/3) with K = (4/3) E* R*^(1/2) of the smallest sizes. */
-static double bond_range(const struct scene *scene, const struct contact *c, double r_min)
+/* Larger for the smallest or for the largest sizes: it is monotonic in R*. */
+static double bond_range(
+    const struct scene *scene, const struct contact *c, const double r[2], bool wall)
 {
-    if (c->binding_force <= 0) return 0;
-    if (c->normal_law == NORMAL_LINEAR) return c->binding_force / c->stiffness;
-    const struct material *a = &scene->material[c->between[0]],
-                          *b = &scene->material[c->between[1]];
-    double e_star =
-        1 / ((1 - a->poisson * a->poisson) / a->young + (1 - b->poisson * b->poisson) / b->young);
-    double k = 4.0 / 3.0 * e_star * sqrt(0.5 * r_min);
-    return pow(c->binding_force / k, 2.0 / 3.0);
+    double row[MATERIAL_WIDTH], part = wall ? 1 : 0.5;
+    contact_table_material(scene, c->between[0], c->between[1], row);
+    return fmax(contact_table_reach(row, part * r[0]), contact_table_reach(row, part * r[1]));
 }
 
 static void element_features(
-    struct features *f, const struct scene *scene, const struct elements_host *e, double *r_min)
+    struct features *f, const struct scene *scene, const struct elements_host *e, double r[2])
 {
-    *r_min = INFINITY;
+    r[0] = INFINITY;
+    r[1] = 0;
     for (int64_t i = 0; i < e->n; i++) {
         double m = scene->material[e->material[i]].density * pow(e->radius[i], 3);
         double m0 = scene->material[e->material[0]].density * pow(e->radius[0], 3);
         f->sizes |= e->radius[i] < e->radius[0] || e->radius[i] > e->radius[0] || m < m0 || m > m0;
         f->materials |= e->material[i] != e->material[0];
         for (int a = 0; a < 3; a++) f->spin |= fabs(e->w[3 * i + a]) > 0;
-        *r_min = fmin(*r_min, e->radius[i]);
+        r[0] = fmin(r[0], e->radius[i]);
+        r[1] = fmax(r[1], e->radius[i]);
     }
 }
 
@@ -63,10 +61,10 @@ struct features features_of(
     const struct scene *scene, const struct walls *walls, const struct elements_host *elements)
 {
     struct features f = {0};
-    double r_min;
+    double r[2]; /* smallest, largest [m] */
     f.real_is_float = scene->precision == PRECISION_SINGLE || scene->precision == PRECISION_MIXED;
     f.position_is_float = scene->precision == PRECISION_SINGLE;
-    element_features(&f, scene, elements, &r_min);
+    element_features(&f, scene, elements, r);
     for (int i = 0; i < scene->n_contact; i++) {
         const struct contact *c = &scene->contact[i];
         bool is_element[2] = {false, false}, is_wall[2] = {false, false};
@@ -78,11 +76,11 @@ struct features features_of(
         }
         if (is_element[0] && is_element[1]) {
             add_contact(&f.pair, scene, c);
-            f.bond_range = fmax(f.bond_range, bond_range(scene, c, r_min));
+            f.bond_range = fmax(f.bond_range, bond_range(scene, c, r, false));
         }
         if ((is_element[0] && is_wall[1]) || (is_element[1] && is_wall[0])) {
             add_contact(&f.wall, scene, c);
-            f.bond_range = fmax(f.bond_range, bond_range(scene, c, 2 * r_min));
+            f.bond_range = fmax(f.bond_range, bond_range(scene, c, r, true));
         }
     }
     for (int i = 0; i < scene->n_measure; i++) f.energy |= scene->measure[i].kind == MEASURE_ENERGY;

@@ -31,7 +31,7 @@ struct features {
     bool moving, timed; /* walls move; appear or go */
     bool remove_outside;
     struct law_features pair, wall;
-    double bond_range; /* [m] how far beyond touching a bond may reach: largest F_b/k_n */
+    double bond_range; /* [m] how far beyond touching a contact may hold */
 };
 
 struct features features_of(

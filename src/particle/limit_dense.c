@@ -46,7 +46,7 @@ double limit_best_share(const struct scene *scene)
     for (int i = 0; i < scene->n_contact; i++) {
         struct contact_material m =
             limit_material_of(scene, scene->contact[i].between[0], scene->contact[i].between[1]);
-        kappa = fmax(kappa, m.k_t / (limit_is_hertz(m) ? 1.5 * m.k_n : m.k_n));
+        kappa = fmax(kappa, m.k_t / (material_is_hertz(m) ? 1.5 * m.k_n : m.k_n));
     }
     return kappa > 0 ? limit_share(kappa) : 1;
 }
@@ -102,7 +102,7 @@ struct limit_contact limit_deepest(const struct scene *scene, const struct limit
 {
     struct limit_ends ends = {c->w, p ? p->w : 0, c->r, p ? p->r : 0};
     double r = p ? fmin(c->r, p->r) : c->r, depth = OVERLAP_LEAST * r;
-    if (limit_is_hertz(m)) {
+    if (material_is_hertz(m)) {
         double rho = scene->material[c->material].density, k = m.k_n * sqrt(limit_r_star(ends));
         if (p) rho = fmax(rho, scene->material[p->material].density);
         depth = fmax(depth, pow(0.5 * rho * speed * speed * 4 * r * r / k, 2.0 / 3.0));

@@ -74,12 +74,13 @@ static void look(struct worst *worst, const struct scene *scene, const struct li
     if (!(m.k_n > 0)) return;
     struct limit_contact k = limit_deepest(scene, c, p, m, speed, 0);
     double m_star = 1 / (c->w + (p ? p->w : 0));
-    worst->contact = fmin(worst->contact, (limit_is_hertz(m) ? 4.03 : M_PI) * sqrt(m_star / k.k_n));
+    worst->contact =
+        fmin(worst->contact, (material_is_hertz(m) ? 4.03 : M_PI) * sqrt(m_star / k.k_n));
     if (!(m.f_b > 0)) return;
     struct limit_ends ends = {c->w, p ? p->w : 0, c->r, p ? p->r : 0};
-    double range = limit_is_hertz(m) ? pow(m.f_b / (m.k_n * sqrt(limit_r_star(ends))), 2.0 / 3.0)
-                                     : m.f_b / m.k_n;
-    double energy = (limit_is_hertz(m) ? 0.4 : 0.5) * m.f_b * range;
+    double range = material_is_hertz(m) ? pow(m.f_b / (m.k_n * sqrt(limit_r_star(ends))), 2.0 / 3.0)
+                                        : m.f_b / m.k_n;
+    double energy = (material_is_hertz(m) ? 0.4 : 0.5) * m.f_b * range;
     double v = fmin(speed, sqrt(2 * energy / m_star));
     if (!(v > 0) || range / v >= worst->bond) return;
     worst->bond = range / v;

@@ -12,6 +12,7 @@ static const double pi = 3.14159265358979;
  * the axis. */
 static double left_after_turn(int steps)
 {
+    struct contact_parameters p = {0};
     vec3 x = v3(0, sqrt(0.5), sqrt(0.5));
     for (int k = 0; k < steps; k++) {
         double a = 2 * pi * k / steps, b = 2 * pi * (k + 1) / steps;
@@ -19,7 +20,7 @@ static double left_after_turn(int steps)
         memset(&q, 0, sizeof q);
         q.n = v3(cos(b), sin(b), 0);
         q.n_half = v3(cos((a + b) / 2), sin((a + b) / 2), 0);
-        x = slider_trial(x, v3(0, 0, 0), slider_carry_of(q, 0, 1, 0, 0), q.n);
+        x = slider_trial(x, v3(0, 0, 0), slider_carry_of(q, p, 1, 0, 0), q.n);
     }
     assert_near(x.x, 0, 1e-14);         /* in the tangent plane */
     assert_near(x.z, sqrt(0.5), 1e-12); /* what lies along the axis does not turn */

@@ -114,7 +114,7 @@ static struct limit_sums add(struct limit_sums s, struct contact_material m, str
 {
     double distance = sqrt(v3_dot(D, D)), delta = touch - distance;
     vec3 n = v3_scale(1 / distance, D);
-    if (!limit_acts(m, ends, delta)) return s;
+    if (!normal_acts(m, limit_r_star(ends), delta)) return s;
     (*count)++;
     return limit_sums_add(s, limit_contact_of(m, ends, delta, v3_dot(v, n), dt), ends, n, share);
 }

@@ -108,12 +108,12 @@ static void ends_and_depth(void **state)
     assert_between(fast.k_n / (1.5 * K * sqrt(deepest)), 1, 1 + 2e-4);
     assert_near(limit_contact_of(hertz, wall, 1e-5, 0, 0).k_n / still.k_n, sqrt(2), 1e-5);
     bond.f_b = 1e-3;
-    assert_true(limit_acts(bond, ends, 1e-9));
-    assert_true(limit_acts(bond, ends, -0.99e-5));
-    assert_false(limit_acts(bond, ends, -1.01e-5));
+    assert_true(normal_acts(bond, limit_r_star(ends), 1e-9));
+    assert_true(normal_acts(bond, limit_r_star(ends), -0.99e-5));
+    assert_false(normal_acts(bond, limit_r_star(ends), -1.01e-5));
     assert_near(limit_contact_of(bond, wall, -1e-5, 0, 0).stretch, 1.001 * 1.001, 1e-12);
     bond.f_b = 0;
-    assert_false(limit_acts(bond, ends, -1e-9));
+    assert_false(normal_acts(bond, limit_r_star(ends), -1e-9));
 }
 
 int main(void)
