@@ -81,7 +81,8 @@ struct scene_key {
     /* "particles", "lattice": the key, and what is below it, belongs to that method; NULL: to
      * both */
     const char *only;
-    /* "law: linear", "stl": allowed (and needed) only beside this sibling value, this sibling */
+    /* "law: linear", "stl": allowed (and needed) only beside this sibling value, this sibling;
+     * "normal.law: hertz": beside this value in a sibling mapping */
     const char *when;
     size_t at; /* 1 + offset into the record; 0: not stored */
     /* KEY_LIST, KEY_NAMED, KEY_WORDS, KEY_TABLE: 1 + offset of the number (int) */

@@ -157,6 +157,17 @@ static void report_alternatives(struct scene_reader *reader, const struct spot *
  * itself is wrong. */
 enum holds { HOLDS_NOT, HOLDS, HOLDS_PERHAPS };
 
+/* The sibling "a", or what is below it in "a.b". */
+static const struct scene_node *find_sibling(const struct scene_node *map, const char *path)
+{
+    char word[32];
+    const char *dot = strchr(path, '.');
+    snprintf(word, sizeof word, "%.*s", (int)(dot ? dot - path : (long)strlen(path)), path);
+    const struct scene_node *node = scene_yaml_get(map, word, NULL);
+    if (!dot || !node) return node;
+    return node->kind == NODE_MAPPING ? find_sibling(node, dot + 1) : NULL;
+}
+
 static enum holds condition(const struct scene_key *key, const struct spot *at)
 {
     if (!key->when) return HOLDS;
@@ -164,8 +175,8 @@ static enum holds condition(const struct scene_key *key, const struct spot *at)
     char sibling[32];
     snprintf(sibling, sizeof sibling, "%.*s",
         (int)(colon ? colon - key->when : (long)strlen(key->when)), key->when);
-    const struct scene_node *node = scene_yaml_get(at->map, sibling, NULL);
-    if (!colon) return node ? HOLDS : HOLDS_NOT;
+    const struct scene_node *node = find_sibling(at->map, sibling);
+    if (!colon || (!node && strchr(sibling, '.'))) return node ? HOLDS : HOLDS_NOT;
     char pattern[128], buffer[64];
     snprintf(pattern, sizeof pattern, "%s.%s", at->pattern, sibling);
     for (int k = 0; k < scene_keys_n && node && node->kind == NODE_SCALAR; k++) {
