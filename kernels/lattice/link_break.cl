@@ -69,7 +69,7 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void link_brea
 }
 
 /* Own cells of the runs of `list` lose the links that are broken. */
-__kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void link_part(int n,
+__kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void link_sever(int n,
     __global const int *list, __global const int *base, int n_run, __global int *restrict word,
     __global const int *fate)
 {

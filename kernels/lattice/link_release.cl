@@ -10,7 +10,7 @@
 #include "link_elastic.h"
 
 #if WITH_SUMS && WITH_BREAK
-/* After link_break, before link_part. fresh: links of each cell that went with the step before,
+/* After link_break, before link_sever. fresh: links of each cell that went with the step before,
  * then those that go with this one; before, after: c and 1 - c. */
 __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void link_release(int n,
     __global const int *list, __global const int *info, __global const int *base,

@@ -99,10 +99,11 @@ static void send(struct exchange *x, struct timers *timers)
     trace_messages(dev->trace, x->halo->n_send, x->halo->send_rank, true);
 }
 
-static void receive(struct device *dev, struct halo *halo, cl_event *most, struct timers *timers)
+static void receive(
+    struct device *dev, struct halo *halo, cl_event *nearly_done, struct timers *timers)
 {
-    if (device_shares_cores(dev)) check_cl(clWaitForEvents(1, most));
-    check_cl(clReleaseEvent(*most));
+    if (device_shares_cores(dev)) check_cl(clWaitForEvents(1, nearly_done));
+    check_cl(clReleaseEvent(*nearly_done));
     trace_lap(dev->trace, "device");
     timer_begin(timers, TIMER_EXCHANGE);
     timer_begin(timers, TIMER_WAIT);
@@ -113,11 +114,11 @@ static void receive(struct device *dev, struct halo *halo, cl_event *most, struc
     trace_messages(dev->trace, halo->n_recv, halo->recv_rank, false);
 }
 
-const cl_event *exchange_swap(
-    struct exchange *x, struct buffer *to, size_t offset, cl_event *most, struct timers *timers)
+const cl_event *exchange_swap(struct exchange *x, struct buffer *to, size_t offset,
+    cl_event *nearly_done, struct timers *timers)
 {
     send(x, timers);
-    receive(x->dev, x->halo, most, timers);
+    receive(x->dev, x->halo, nearly_done, timers);
     buffer_write_begin(to, x->dev->copy, offset, (size_t)x->n_recv * x->record,
         x->recv_staging.host, NULL, &x->written_event);
     check_cl(clFlush(x->dev->copy));

@@ -38,13 +38,13 @@ void exchange_bind(struct exchange *x, size_t record, bool has_arrived);
  * records, and its read-back, and posts receives. */
 void exchange_begin(struct exchange *x, struct launch *pack, struct timers *timers);
 /* Sends, waits for arrivals, enqueues their copy to `to` at `offset` bytes. Returns the event that
- * kernels on arrivals have to wait for (borrowed). `most`: of the kernels that run meanwhile, an
- * event shortly before their end, released here: a host that shares cores with the device sleeps
- * until then, instead of taking time from it by looking. Pack kernel and all before it are done
- * when this returns: what is enqueued then, on whichever queue, cannot overtake kernels that read
- * the arrivals before. */
-const cl_event *exchange_swap(
-    struct exchange *x, struct buffer *to, size_t offset, cl_event *most, struct timers *timers);
+ * kernels on arrivals have to wait for (borrowed). `nearly_done`: of the kernels that run
+ * meanwhile, an event shortly before their end, released here: a host that shares cores with the
+ * device sleeps until then, instead of taking time from it by looking. Pack kernel and all before
+ * it are done when this returns: what is enqueued then, on whichever queue, cannot overtake
+ * kernels that read the arrivals before. */
+const cl_event *exchange_swap(struct exchange *x, struct buffer *to, size_t offset,
+    cl_event *nearly_done, struct timers *timers);
 
 /* Before the plan or the staging buffers change: nothing is under way afterwards. */
 void exchange_settle(struct exchange *x);

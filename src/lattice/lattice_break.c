@@ -9,7 +9,7 @@
 struct lattice_break {
     struct lattice *l;
     struct program *program;
-    struct launch *judge, *part;
+    struct launch *judge, *sever;
     struct buffer limit, fate;
     struct program *program_release; /* NULL: released energy is not asked for */
     struct launch *release;
@@ -75,9 +75,9 @@ struct lattice_break *lattice_break_create(struct lattice *l, const struct latti
     launch_bind_buffer(b->judge, "limit", &b->limit);
     launch_bind_buffer(b->judge, "fate", &b->fate);
     launch_set_int(b->judge, "n", l->layout->n_run - 2);
-    b->part = lattice_launch(l, b->program, "link_part", &l->force_list);
-    launch_bind_buffer(b->part, "fate", &b->fate);
-    launch_set_int(b->part, "n", l->layout->n_force);
+    b->sever = lattice_launch(l, b->program, "link_sever", &l->force_list);
+    launch_bind_buffer(b->sever, "fate", &b->fate);
+    launch_set_int(b->sever, "n", l->layout->n_force);
     create_release(b);
     return b;
 }
@@ -87,7 +87,7 @@ void lattice_break_free(struct lattice_break *b)
     if (!b) return;
     device_finish(b->l->dev);
     launch_free(b->judge);
-    launch_free(b->part);
+    launch_free(b->sever);
     launch_free(b->release);
     program_free(b->program);
     program_free(b->program_release);
@@ -110,10 +110,10 @@ void lattice_break_judge(struct lattice_break *b, int64_t x_in, int64_t v_in)
     launch_run(b->release, (int64_t)c->n_force * c->run);
 }
 
-void lattice_break_part(struct lattice_break *b)
+void lattice_break_sever(struct lattice_break *b)
 {
     const struct lattice_layout *c = b->l->layout;
-    launch_run(b->part, (int64_t)c->n_force * c->run);
+    launch_run(b->sever, (int64_t)c->n_force * c->run);
 }
 
 const char *lattice_break_name(int mode)

@@ -21,7 +21,7 @@ void lattice_break_free(struct lattice_break *b); /* NULL is fine */
 /* Enqueue. x_in, v_in: first numbers of the sets of planes with the state to judge; ghosts and
  * pressures are of that state too. */
 void lattice_break_judge(struct lattice_break *b, int64_t x_in, int64_t v_in);
-void lattice_break_part(struct lattice_break *b);
+void lattice_break_sever(struct lattice_break *b);
 
 /* Has a kernel of the account of energy know what has been released
  * (kernels/lattice/link_release.cl); features.energy only. */

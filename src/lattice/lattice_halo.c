@@ -69,8 +69,9 @@ void lattice_halo_begin(struct lattice_halo *h, int64_t x_in, int64_t v_in, stru
     exchange_begin(&h->exchange, h->pack, timers);
 }
 
-void lattice_halo_swap(struct lattice_halo *h, cl_event *most, struct timers *timers)
+void lattice_halo_swap(struct lattice_halo *h, cl_event *nearly_done, struct timers *timers)
 {
-    const cl_event *arrived = exchange_swap(&h->exchange, &h->exchange.arrived, 0, most, timers);
+    const cl_event *arrived =
+        exchange_swap(&h->exchange, &h->exchange.arrived, 0, nearly_done, timers);
     launch_run_on(h->unpack, h->exchange.dev->compute, h->exchange.n_recv, arrived, NULL);
 }

@@ -25,7 +25,7 @@ void lattice_halo_free(struct lattice_halo *h);
  * receives. */
 void lattice_halo_begin(struct lattice_halo *h, int64_t x_in, int64_t v_in, struct timers *timers);
 /* After the interior's kernels are enqueued: sends, waits for arrivals, enqueues what puts them in
- * place. `most`: see exchange_swap. */
-void lattice_halo_swap(struct lattice_halo *h, cl_event *most, struct timers *timers);
+ * place. `nearly_done`: see exchange_swap. */
+void lattice_halo_swap(struct lattice_halo *h, cl_event *nearly_done, struct timers *timers);
 
 #endif

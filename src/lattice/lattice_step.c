@@ -28,7 +28,7 @@ static void run(struct lattice *l, struct launch *launch, int first, int n, cl_e
 static void evaluate(struct lattice *l, int x_in, int x_out, int v_in, int v_out)
 {
     const struct lattice_layout *c = l->layout;
-    cl_event most = NULL;
+    cl_event nearly_done = NULL;
     launch_set_long(l->force, "x_in", x_at(l, x_in));
     launch_set_long(l->force, "x_out", x_at(l, x_out));
     launch_set_long(l->force, "v_in", v_at(l, v_in));
@@ -42,11 +42,11 @@ static void evaluate(struct lattice *l, int x_in, int x_out, int v_in, int v_out
         lattice_halo_begin(l->halo, x_at(l, x_in), v_at(l, v_in), l->timers);
         trace_part(l->dev->trace, "interior");
         if (l->features.volume) run(l, l->volume, 0, c->n_volume_interior, NULL);
-        run(l, l->force, 0, n_first, &most);
+        run(l, l->force, 0, n_first, &nearly_done);
         run(l, l->force, n_first, c->n_force_interior - n_first, NULL);
         trace_part(l->dev->trace, NULL);
         device_flush(l->dev);
-        lattice_halo_swap(l->halo, &most, l->timers);
+        lattice_halo_swap(l->halo, &nearly_done, l->timers);
     }
     int n_volume = l->halo ? c->n_volume_interior : 0, n_force = l->halo ? c->n_force_interior : 0;
     trace_part(l->dev->trace, "boundary");
@@ -64,7 +64,7 @@ static void judge(struct lattice *l, int x_in, int v_in)
 }
 static void part(struct lattice *l)
 {
-    if (l->breakage) lattice_break_part(l->breakage);
+    if (l->breakage) lattice_break_sever(l->breakage);
 }
 
 /* Kicks that an evaluation enters in the ledger (kernels/lattice/lattice_work.h). */

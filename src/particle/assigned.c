@@ -312,10 +312,11 @@ void assigned_begin(struct assigned *a, enum assigned_way way, struct timers *ti
     exchange_begin(&a->exchange[way], a->pack[way], timers);
 }
 
-void assigned_swap(struct assigned *a, enum assigned_way way, cl_event *most, struct timers *timers)
+void assigned_swap(
+    struct assigned *a, enum assigned_way way, cl_event *nearly_done, struct timers *timers)
 {
     struct exchange *x = &a->exchange[way];
-    const cl_event *arrived = exchange_swap(x, &x->arrived, 0, most, timers);
+    const cl_event *arrived = exchange_swap(x, &x->arrived, 0, nearly_done, timers);
     launch_run_on(a->unpack[way], x->dev->compute, x->n_recv, arrived, NULL);
 }
 

@@ -33,9 +33,9 @@ void assigned_build(struct assigned *a, struct scan *scan, const struct particle
 
 /* Within a step, each way in turn: enqueues packing and its read-back, posts receives. */
 void assigned_begin(struct assigned *a, enum assigned_way way, struct timers *timers);
-/* Sends, waits for arrivals, enqueues what puts them in place. `most`: see exchange_swap. */
+/* Sends, waits for arrivals, enqueues what puts them in place. `nearly_done`: see exchange_swap. */
 void assigned_swap(
-    struct assigned *a, enum assigned_way way, cl_event *most, struct timers *timers);
+    struct assigned *a, enum assigned_way way, cl_event *nearly_done, struct timers *timers);
 
 /* States and histories of all pairs of pairs->now to the ranks that do not compute them, before
  * lists are built anew: nothing is under way afterwards. Collective. */

@@ -177,9 +177,9 @@ void ghosts_begin(struct ghosts *g, struct timers *timers)
 }
 
 const cl_event *ghosts_swap(
-    struct ghosts *g, struct particles *p, cl_event *most, struct timers *timers)
+    struct ghosts *g, struct particles *p, cl_event *nearly_done, struct timers *timers)
 {
     if (g->comm->n_rank == 1) return NULL;
     return exchange_swap(&g->exchange, &p->field[FIELD_STATE].now,
-        (size_t)p->n_owned * g->exchange.record, most, timers);
+        (size_t)p->n_owned * g->exchange.record, nearly_done, timers);
 }

@@ -34,10 +34,10 @@ void ghosts_refresh(struct ghosts *g, struct particles *p);
 
 /* Enqueues packing of what others need and its read-back, posts receives. */
 void ghosts_begin(struct ghosts *g, struct timers *timers);
-/* Sends, waits for arrivals, enqueues their copy to the device. `most`: see exchange_swap. Returns
- * the event that kernels on ghosts have to wait for (borrowed), NULL if there is nothing to wait
- * for. */
+/* Sends, waits for arrivals, enqueues their copy to the device. `nearly_done`: see exchange_swap.
+ * Returns the event that kernels on ghosts have to wait for (borrowed), NULL if there is nothing
+ * to wait for. */
 const cl_event *ghosts_swap(
-    struct ghosts *g, struct particles *p, cl_event *most, struct timers *timers);
+    struct ghosts *g, struct particles *p, cl_event *nearly_done, struct timers *timers);
 
 #endif

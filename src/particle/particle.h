@@ -18,7 +18,8 @@ struct particle_run {
     struct walls *walls;
     double domain[6], period[3]; /* box low, high [m]; 0 where not periodic */
     struct elements_host *first; /* as generated, all elements on every rank */
-    int64_t *left; /* [n_measure] removed elements that a count goes on counting, on this rank */
+    /* [n_measure] removed elements that a count goes on counting, on this rank */
+    int64_t *n_removed_in;
     struct program *program_lists, *program_pair, *program_wall, *program_body, *program_assign;
     struct particles *particles;
     struct cells *cells;
@@ -90,7 +91,7 @@ int particle_measure_columns(const struct sim *s, const struct measure *measure,
 void particle_measure(struct sim *s, const bool *due, double (*value)[STEP_MEASURE_COLUMNS]);
 /* An element has left the run at x [m]: counts whose region holds the place go on counting it. Not
  * collective. */
-void particle_left(struct sim *s, const double x[3]);
+void particle_note_removed(struct sim *s, const double x[3]);
 bool particle_digest(struct sim *s, uint64_t *digest);
 void particle_count(const struct sim *s, struct step_counts *counts);
 void particle_report_features(const struct sim *s, struct report *r);

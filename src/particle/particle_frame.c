@@ -15,7 +15,7 @@ static int total_tables(struct sim *s, struct sheet *t, struct table *table)
     bool first = s->comm->rank == 0;
     int64_t *left = sheet_keep(t, fail_alloc((size_t)s->scene->n_measure * sizeof *left));
     int64_t(*total)[SUMS_WIDTH] = sheet_keep(t, fail_alloc(ENERGY_TOTALS * sizeof *total));
-    for (int i = 0; i < s->scene->n_measure; i++) left[i] = run->left[i];
+    for (int i = 0; i < s->scene->n_measure; i++) left[i] = run->n_removed_in[i];
     comm_sum_i64(s->comm, left, s->scene->n_measure);
     energy_totals(s, total);
     sheet_add(t, "left", "1", "elements that have left where a count holds, by measure", COLUMN_I64,

@@ -24,17 +24,17 @@ static bool holds(const struct measure *m, const double x[3])
     return true;
 }
 
-void particle_left(struct sim *s, const double x[3])
+void particle_note_removed(struct sim *s, const double x[3])
 {
     for (int i = 0; i < s->scene->n_measure; i++)
         if (s->scene->measure[i].kind == MEASURE_COUNT && holds(&s->scene->measure[i], x))
-            s->particle->left[i]++;
+            s->particle->n_removed_in[i]++;
 }
 
 static void measure_count(struct sim *s, int i, const struct view *view, double *value)
 {
     const struct particles_host *h = view->host;
-    int64_t n[2] = {0, s->particle->left[i]};
+    int64_t n[2] = {0, s->particle->n_removed_in[i]};
     for (int64_t k = 0; k < h->n; k++) n[0] += holds(&s->scene->measure[i], h->x + 3 * k);
     comm_sum_i64(s->comm, n, 2);
     value[0] = (double)(n[0] + n[1]);

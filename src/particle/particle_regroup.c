@@ -39,7 +39,7 @@ static void account(struct sim *s)
 {
     struct particle_run *run = s->particle;
     int64_t n = run->owners->n_removed;
-    for (int64_t i = 0; i < n; i++) particle_left(s, run->owners->removed[i].x);
+    for (int64_t i = 0; i < n; i++) particle_note_removed(s, run->owners->removed[i].x);
     comm_sum_i64(s->comm, &n, 1);
     s->n_removed += n;
     run->particles->n_global -= n;

@@ -53,7 +53,7 @@ static void place(struct sim *s, const struct frame_table *t)
     const double *reference = frame_table_get(t, "reference");
     h->x = fail_alloc(3 * n * sizeof *h->x);
     for (size_t i = 0; i < n; i++) memcpy(h->x + 3 * i, reference + 4 * i, 3 * sizeof *h->x);
-    particles_place(p, &run->features, h);
+    particles_replace(p, &run->features, h);
     buffer_reserve(&p->reference, 4 * particles_preal(&run->features) * n);
     particle_fields_restore(s, t, true);
     int64_t built_at = h5_read_i64(s->from->reader, "built_at");
@@ -85,7 +85,7 @@ static void restore_left(struct sim *s)
     for (int i = 0; i < s->scene->n_measure && s->comm->rank == 0; i++)
         for (int k = 0; k < n; k++)
             if (is_same_count(&s->scene->measure[i], &before->measure[k]))
-                s->particle->left[i] = left[k];
+                s->particle->n_removed_in[i] = left[k];
     free(left);
 }
 

@@ -117,7 +117,7 @@ static void distribute(struct sim *s)
     particle_spread(s, n > 0 ? e->x + 3 * begin : e->x, n);
     unsigned char *take = fail_alloc((size_t)e->n);
     for (int64_t i = 0; i < e->n; i++) take[i] = rcb_owner(run->rcb, e->x + 3 * i) == s->comm->rank;
-    particles_upload(run->particles, &run->features, e, s->scene, take);
+    particles_take(run->particles, &run->features, e, s->scene, take);
     free(take);
 }
 
@@ -165,7 +165,7 @@ void particle_setup(struct sim *s)
 {
     struct particle_run *run = s->particle;
     s->n_first = run->first->n;
-    run->left = fail_alloc((size_t)s->scene->n_measure * sizeof *run->left);
+    run->n_removed_in = fail_alloc((size_t)s->scene->n_measure * sizeof *run->n_removed_in);
     log_element(s->log, "particle");
     log_print(s->log, "%lld particle%s, %d wall%s", (long long)s->n_first,
         s->n_first == 1 ? "" : "s", s->scene->n_wall, s->scene->n_wall == 1 ? "" : "s");
@@ -214,7 +214,7 @@ void particle_free(struct sim *s)
     rcb_free(run->rcb);
     walls_free(run->walls);
     generate_free(run->first);
-    free(run->left);
+    free(run->n_removed_in);
     buffer_free(&run->table_pair);
     buffer_free(&run->table_wall);
     for (int i = 0; i < 5; i++) launch_free(launch[i]);

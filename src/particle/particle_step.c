@@ -24,13 +24,14 @@ static void launch_pairs(
     if (n > 0 || done) launch_run_on(run->pair_force, s->dev->compute, n, wait, done);
 }
 
-/* Interior pairs first <= p < end. With messages to come, `most` is the event of their larger part:
- * when it is over the host has time to pass on what came, while the device does the rest. */
-static void launch_interior(struct sim *s, int64_t first, int64_t end, cl_event *most)
+/* Interior pairs first <= p < end. With messages to come, `nearly_done` is the event of their
+ * larger part: when it is over the host has time to pass on what came, while the device does the
+ * rest. */
+static void launch_interior(struct sim *s, int64_t first, int64_t end, cl_event *nearly_done)
 {
     int64_t middle = s->comm->n_rank > 1 ? first + (end - first) * 3 / 4 / BATCH * BATCH : end;
     trace_part(s->dev->trace, "interior");
-    launch_pairs(s, first, middle - first, NULL, s->comm->n_rank > 1 ? most : NULL);
+    launch_pairs(s, first, middle - first, NULL, s->comm->n_rank > 1 ? nearly_done : NULL);
     launch_pairs(s, middle, end - middle, NULL, NULL);
     trace_part(s->dev->trace, NULL);
 }
@@ -40,11 +41,11 @@ static void launch_interior(struct sim *s, int64_t first, int64_t end, cl_event 
 static void send_back(struct sim *s, int64_t first)
 {
     struct particle_run *run = s->particle;
-    cl_event most = NULL;
+    cl_event nearly_done = NULL;
     assigned_begin(run->assigned, ASSIGNED_RESULTS, &s->timers);
-    launch_interior(s, first, run->pairs->now.n_interior, &most);
+    launch_interior(s, first, run->pairs->now.n_interior, &nearly_done);
     device_flush(s->dev);
-    assigned_swap(run->assigned, ASSIGNED_RESULTS, &most, &s->timers);
+    assigned_swap(run->assigned, ASSIGNED_RESULTS, &nearly_done, &s->timers);
 }
 
 static void launch_walls(struct sim *s)
@@ -62,16 +63,16 @@ void particle_forces(struct sim *s)
     struct particle_run *run = s->particle;
     const struct pair_list *l = &run->pairs->now;
     int64_t n_first = run->assigned ? l->n_interior / 2 / BATCH * BATCH : l->n_interior;
-    cl_event most = NULL;
+    cl_event nearly_done = NULL;
     if (run->wall_contacts) wall_contacts_set_step(run->wall_contacts, s->step);
     if (run->assigned) assigned_begin(run->assigned, ASSIGNED_STATES, &s->timers);
     else ghosts_begin(run->ghosts, &s->timers);
-    launch_interior(s, 0, n_first, &most);
+    launch_interior(s, 0, n_first, &nearly_done);
     launch_walls(s);
     device_flush(s->dev);
     const cl_event *arrived = NULL;
-    if (run->assigned) assigned_swap(run->assigned, ASSIGNED_STATES, &most, &s->timers);
-    else arrived = ghosts_swap(run->ghosts, run->particles, &most, &s->timers);
+    if (run->assigned) assigned_swap(run->assigned, ASSIGNED_STATES, &nearly_done, &s->timers);
+    else arrived = ghosts_swap(run->ghosts, run->particles, &nearly_done, &s->timers);
     trace_part(s->dev->trace, "boundary");
     launch_pairs(s, l->first_boundary, l->n_mine, arrived, NULL);
     trace_part(s->dev->trace, NULL);

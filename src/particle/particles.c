@@ -143,7 +143,8 @@ void particles_write_state(
     free(state);
 }
 
-void particles_place(struct particles *p, const struct features *f, const struct particles_host *h)
+void particles_replace(
+    struct particles *p, const struct features *f, const struct particles_host *h)
 {
     p->n_owned = h->n;
     p->n_ghost = 0;
@@ -180,7 +181,7 @@ void particles_host_kind(struct particles_host *h, int64_t i, const struct scene
     h->mass[i] = mass_of(scene, h->material[i], first->radius[gid]);
 }
 
-void particles_upload(struct particles *p, const struct features *features,
+void particles_take(struct particles *p, const struct features *features,
     const struct elements_host *elements, const struct scene *scene, const unsigned char *take)
 {
     int64_t n = 0, k = 0;
@@ -195,7 +196,7 @@ void particles_upload(struct particles *p, const struct features *features,
         particles_host_kind(h, k++, scene, elements);
     }
     p->n_global = elements->n;
-    particles_place(p, features, h);
+    particles_replace(p, features, h);
     particles_host_free(h);
 }
 

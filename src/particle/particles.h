@@ -73,13 +73,13 @@ void particles_host_kind(struct particles_host *host, int64_t i, const struct sc
     const struct elements_host *first);
 void particles_host_free(struct particles_host *host);
 
-/* Takes over the elements of which take[i] is set. mass: [kg] by element. */
-void particles_upload(struct particles *p, const struct features *features,
+/* Fills the empty store with the generated elements whose take[i] is set. */
+void particles_take(struct particles *p, const struct features *features,
     const struct elements_host *elements, const struct scene *scene, const unsigned char *take);
-/* The same of rows that are here already; without p->n_global. */
-void particles_place(
+/* Replaces all elements by the rows of `host`; leaves p->n_global as it is. */
+void particles_replace(
     struct particles *p, const struct features *features, const struct particles_host *host);
-/* Writes places and motions of the owned elements anew, in their order. */
+/* Overwrites positions and motion of the owned elements, which stay in their order. */
 void particles_write_state(
     struct particles *p, const struct features *features, const struct particles_host *host);
 

@@ -17,7 +17,7 @@ static void list_buffers(struct wall_list *l, struct buffer *all[LIST_BUFFERS])
 
 static void own_buffers(struct wall_contacts *w, struct buffer *all[OWN_BUFFERS])
 {
-    struct buffer *b[OWN_BUFFERS] = {&w->primitive, &w->bounds, &w->features_of, &w->wall_of,
+    struct buffer *b[OWN_BUFFERS] = {&w->primitive, &w->bounds, &w->triangle_features, &w->wall_of,
         &w->material, &w->room, &w->pose, &w->keep, &w->result, &w->ledger, &w->batch};
     memcpy(all, b, sizeof b);
 }
@@ -62,7 +62,7 @@ static void upload_walls(struct wall_contacts *w, const struct scene *scene)
     for (size_t i = 0; i < n_wall; i++) material[i] = scene->wall[i].material;
     buffer_reserve(&w->primitive, 12 * n * preal);
     buffer_reserve(&w->bounds, 6 * n * preal);
-    buffer_reserve(&w->features_of, 6 * n * sizeof(cl_int));
+    buffer_reserve(&w->triangle_features, 6 * n * sizeof(cl_int));
     buffer_reserve(&w->wall_of, n * sizeof(cl_int));
     buffer_reserve(&w->material, n_wall * sizeof(cl_int));
     buffer_reserve(&w->room, n_wall * preal);
@@ -70,7 +70,7 @@ static void upload_walls(struct wall_contacts *w, const struct scene *scene)
     buffer_reserve(&w->batch, WALL_BATCH * n_wall * POSE_WIDTH * preal);
     reals_write(&w->primitive, is_float, 0, 12 * n, walls->primitive);
     reals_write(&w->bounds, is_float, 0, 6 * n, bounds);
-    buffer_write(&w->features_of, 0, 6 * n * sizeof(cl_int), walls->features);
+    buffer_write(&w->triangle_features, 0, 6 * n * sizeof(cl_int), walls->features);
     buffer_write(&w->wall_of, 0, n * sizeof(cl_int), walls->wall_of);
     buffer_write(&w->material, 0, n_wall * sizeof(cl_int), material);
     free(bounds);
@@ -291,8 +291,9 @@ void wall_contacts_select(struct wall_contacts *w, const struct particles *p)
         const char *name;
         const struct buffer *buffer;
     } bind[] = {{"position", &p->field[FIELD_STATE].now}, {"begin", &l->begin},
-        {"candidate", &l->candidate}, {"primitive", &w->primitive}, {"features", &w->features_of},
-        {"wall_of", &w->wall_of}, {"pose", &w->pose}, {"keep", &w->keep}};
+        {"candidate", &l->candidate}, {"primitive", &w->primitive},
+        {"features", &w->triangle_features}, {"wall_of", &w->wall_of}, {"pose", &w->pose},
+        {"keep", &w->keep}};
     for (size_t i = 0; i < sizeof bind / sizeof *bind; i++)
         launch_bind_buffer(k, bind[i].name, bind[i].buffer);
     launch_bind_buffer_if(k, "state", &l->state);

@@ -28,7 +28,7 @@ struct wall_contacts {
     struct contact_layout layout;
     struct wall_list now, old;
     struct contact_arrivals arrivals;
-    struct buffer primitive, bounds, features_of, wall_of, material, room, pose, keep, result,
+    struct buffer primitive, bounds, triangle_features, wall_of, material, room, pose, keep, result,
         ledger;
     struct buffer batch;     /* preal [WALL_BATCH][n_wall][POSE_WIDTH] */
     struct wall_pose *poses; /* [WALL_BATCH][n_wall] on the host */

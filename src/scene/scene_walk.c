@@ -317,9 +317,9 @@ static void read_value(
         scene_write_value(&reader->out, key->special);
     } else if (key->type == KEY_MAP || (key->type == KEY_SPAN && at->map->kind == NODE_MAPPING)) {
         if (at->map->kind != NODE_MAPPING) {
-            const char * or = key->special ? ", or '" : "",
-                         *word = key->special ? key->special : "", *end = key->special ? "'" : "";
-            scene_issue_at(reader, at->map, at->path, "expected a mapping%s%s%s, found %s", or,
+            const char *before = key->special ? ", or '" : "",
+                       *word = key->special ? key->special : "", *end = key->special ? "'" : "";
+            scene_issue_at(reader, at->map, at->path, "expected a mapping%s%s%s, found %s", before,
                 word, end, scene_yaml_kind_name(at->map));
             return;
         }
