@@ -26,6 +26,7 @@
 #ifndef DEMOCLES_LAW_NORMAL_H
 #define DEMOCLES_LAW_NORMAL_H
 
+#include "contact_state.h"
 #include "law_binding.h"
 #include "law_kinematics.h"
 #include "law_parameters.h"
@@ -35,10 +36,6 @@
 /* Laws that hold beyond the touch: W as in contact_memory.h. */
 #define COHESION_OF(W) W(BINDING)
 #define WITH_COHESION COHESION_OF(FLAG)
-
-/* Bits of contact_history.state. */
-#define CONTACT_TOUCHING 1
-#define CONTACT_BONDED 2
 
 /* The spring at an overlap, whether or not there is contact. */
 struct normal_spring {

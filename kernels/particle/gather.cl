@@ -14,15 +14,13 @@
  * lint: WITH_PAIR_ROLLING requires WITH_PAIR_ROTATION
  * lint: WITH_WALL_ROTATION requires WITH_WALLS
  * lint: WITH_ORIENTATION requires WITH_SPIN */
+#include "common/flags.h"
 #include "incidence.h"
 #include "integrate.h"
+#include "particle_words.h"
 
 /* RESULT_WIDTH of the pairs' program */
 #define PAIR_WIDTH (WITH_PAIR_ROLLING ? 12 : WITH_PAIR_ROTATION ? 8 : 4)
-#define WALL_WIDTH (WITH_WALL_ROTATION ? 8 : 4)
-
-#define FLAG_STALE 0
-#define FLAG_LOST 1
 
 /* 1, or -1 where is_down is 1, by its bits: no branch, no table. */
 #if REAL_IS_FLOAT
@@ -73,7 +71,7 @@ __kernel __attribute__((reqd_work_group_size(64, 1, 1))) void gather(int n_owned
     }
 #if WITH_WALLS
     for (int k = wall_begin[e]; k < wall_begin[e + 1]; k++) {
-        __global const real *r = wall_result + (size_t)k * WALL_WIDTH;
+        __global const real *r = wall_result + (size_t)k * WALL_RESULT_WIDTH(WITH_WALL_ROTATION);
         f += vload4(0, r);
         if (WITH_WALL_ROTATION) t += vload4(1, r);
     }

@@ -4,10 +4,7 @@
 #define DEMOCLES_GRID_H
 
 #include "element.h"
-
-/* per level: lower corner x y z [m], cells per metre x y z, largest reach on the level [m] */
-#define GRID_REALS 7
-#define GRID_INTS 4 /* per level: cells x y z, number of the first cell */
+#include "particle_words.h"
 
 /* Levels go from coarse to fine; an element belongs to the finest one whose largest reach is not
  * below its own. */

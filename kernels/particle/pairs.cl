@@ -3,12 +3,12 @@
  *
  * A pair belongs to the row of its lower global id (up entries). Rows whose up entries are all
  * owned, of owned elements, make the interior pairs; the rest are boundary pairs and wait for the
- * ghosts. Boundary pairs begin at the next multiple of 64. */
+ * ghosts. Boundary pairs begin at the next multiple of PAIR_ALIGN. */
 #include "common/types.h"
 #include "incidence.h"
+#include "particle_words.h"
 #include "remember.h"
 #include "row_find.h"
-#define PAIR_ALIGN 64
 
 /* split [n_all]: first up entry of the row; interior, boundary [n_all + 1]: up entries, one of both
  * 0; incidence [n_owned + 1]: length of the row in the gather's list. */

@@ -122,7 +122,6 @@ LAW int row_find(struct row_search s, int n_level, int room, __global const prea
 /* fill 0: begin[e] = length of the row; the first ROW_FOUND entries stay in found
  * [n_all][ROW_FOUND], so that short rows are searched only once. fill 1: begin [n_all + 1] from the
  * scan; row and row_gid get the entries, sorted. */
-#define ROW_FOUND 32
 __kernel __attribute__((reqd_work_group_size(64, 1, 1))) void rows(int n_owned, int n_all, int fill,
     int n_level, __global const preal *position, __global const preal *reach,
     __global const long *gid, __global const preal *grid_real, __global const int *grid_int,

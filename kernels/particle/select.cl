@@ -1,14 +1,13 @@
 /* Who belongs where: owner of each element by the tree of cuts, elements outside the domain, ghosts
  * for a neighbour, bounds, and the room to move. */
 #include "element.h"
-
-#define GROUP 64
+#include "particle_words.h"
 
 /* Wraps periodic coordinates into [low, low + period), in place, and finds the owner: tree of cuts
  * as in partition.h (nodes: axis, left, right). Outside the domain (remove 1): owner -1. stay [n]:
  * 1 where the owner is this rank; leave [n + 1]: 0 where it is. */
-__kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void select_owner(int n, int rank,
-    int n_node, int remove, __global preal *position, __global const int *node,
+__kernel __attribute__((reqd_work_group_size(SELECT_GROUP, 1, 1))) void select_owner(int n,
+    int rank, int n_node, int remove, __global preal *position, __global const int *node,
     __global const preal *cut,
 #if WITH_PERIODIC_X || WITH_PERIODIC_Y || WITH_PERIODIC_Z
     preal period_x, preal period_y, preal period_z,
@@ -47,7 +46,7 @@ __kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void select_owner(in
 
 /* reference: place now, lane 3 the room to move, skin + horizon |v| [m]; reach: radius + room +
  * half the range of bonds. */
-__kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void select_room(int n,
+__kernel __attribute__((reqd_work_group_size(SELECT_GROUP, 1, 1))) void select_room(int n,
     __global const preal *position, __global const real *motion, real skin, real horizon,
     real bond_range, __global preal *reference, __global preal *reach)
 {
@@ -67,16 +66,15 @@ LAW preal select_worse(preal a, preal b) { return a > b || a != a ? a : b; }
 /* Bounds of centres, smallest and largest reach, largest squared velocity: partial
  * [n_group][BOUNDS_WIDTH], each group strides over the elements. Minima are stored negated, so that
  * all are maxima. */
-#define BOUNDS_WIDTH 9
-__kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void select_bounds(int n, int n_group,
-    __global const preal *position, __global const real *motion, __global const preal *reach,
-    __global preal *partial)
+__kernel __attribute__((reqd_work_group_size(SELECT_GROUP, 1, 1))) void select_bounds(int n,
+    int n_group, __global const preal *position, __global const real *motion,
+    __global const preal *reach, __global preal *partial)
 {
-    __local preal loc[BOUNDS_WIDTH * GROUP];
+    __local preal loc[BOUNDS_WIDTH * SELECT_GROUP];
     int l = get_local_id(0), g = get_group_id(0);
     preal b[BOUNDS_WIDTH];
     for (int k = 0; k < BOUNDS_WIDTH; k++) b[k] = (preal)-1e30;
-    for (int e = g * GROUP + l; e < n && g < n_group; e += n_group * GROUP) {
+    for (int e = g * SELECT_GROUP + l; e < n && g < n_group; e += n_group * SELECT_GROUP) {
         preal4 x = LOAD_POSITION(e);
         real4 v = LOAD_VELOCITY(e);
         preal s = (preal)(v.s0 * v.s0 + v.s1 * v.s1 + v.s2 * v.s2), r = reach[e];
@@ -91,12 +89,13 @@ __kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void select_bounds(i
         /* NaN if anything is NaN or infinite */
         b[8] = select_worse(b[8], s + (s - s) + (x.s0 - x.s0) + (x.s1 - x.s1) + (x.s2 - x.s2));
     }
-    for (int k = 0; k < BOUNDS_WIDTH; k++) loc[k * GROUP + l] = b[k];
+    for (int k = 0; k < BOUNDS_WIDTH; k++) loc[k * SELECT_GROUP + l] = b[k];
     barrier(CLK_LOCAL_MEM_FENCE);
     if (l == 0 && g < n_group)
         for (int k = 0; k < BOUNDS_WIDTH; k++) {
-            preal best = loc[k * GROUP];
-            for (int m = 1; m < GROUP; m++) best = select_worse(best, loc[k * GROUP + m]);
+            preal best = loc[k * SELECT_GROUP];
+            for (int m = 1; m < SELECT_GROUP; m++)
+                best = select_worse(best, loc[k * SELECT_GROUP + m]);
             partial[g * BOUNDS_WIDTH + k] = best;
         }
 }
@@ -155,8 +154,8 @@ LAW int select_meets_image(pvec3 own, preal r, preal period_x, preal period_y, p
 
 /* Ghosts for one neighbour, `rank`: at [n + 1] = 1 where the element's reach comes within far_reach
  * of the box of the neighbour's centres and of a leaf that is the neighbour's. */
-__kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void select_ghosts(int n, int rank,
-    int n_node, __global const preal *position, __global const preal *reach,
+__kernel __attribute__((reqd_work_group_size(SELECT_GROUP, 1, 1))) void select_ghosts(int n,
+    int rank, int n_node, __global const preal *position, __global const preal *reach,
     __global const int *node, __global const preal *cut, __global const preal *domain, preal low_x,
     preal low_y, preal low_z, preal high_x, preal high_y, preal high_z, preal far_reach,
 #if WITH_PERIODIC_X || WITH_PERIODIC_Y || WITH_PERIODIC_Z

@@ -14,6 +14,7 @@
  * lint: some of WITH_LINEAR WITH_HERTZ */
 #include "element.h"
 #include "contact/contact_memory.h"
+#include "particle_words.h"
 #include "wall_geometry.h"
 
 /* Rows of local memory: real, then preal; results take the place of the former. */
@@ -29,7 +30,6 @@
 #define P_ROWS 16
 #define LOC(row) loc[(row)*BATCH + l]
 #define PLACE(row) place[(row)*BATCH + l]
-#define WALL_RESULT_WIDTH (WITH_ROTATION ? 8 : 4)
 
 #if WITH_TABLE
 #define TABLE_ROW (int)LOC(L_KIND)
@@ -159,7 +159,7 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void wall_forc
     }
     BATCH_BARRIER;
     FOR_BATCH (l, n) {
-        __global real *out = result + (base + l) * WALL_RESULT_WIDTH;
+        __global real *out = result + (base + l) * WALL_RESULT_WIDTH(WITH_ROTATION);
         vstore4((real4)(LOC(0), LOC(1), LOC(2), (real)0), 0, out);
         if (WITH_ROTATION) vstore4((real4)(LOC(3), LOC(4), LOC(5), (real)0), 1, out);
     }

@@ -4,8 +4,7 @@
 #define DEMOCLES_WALL_POSE_H
 
 #include "contact/law_wall.h"
-
-#define POSE_WIDTH 22 /* rotation 9 (rows), translation 3, velocity 3, spin 3, centre 3, active */
+#include "particle_words.h"
 
 #ifdef __OPENCL_VERSION__
 LAW struct wall_frame pose_frame(__global const preal *p)

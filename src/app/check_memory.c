@@ -3,12 +3,11 @@
 #include "check_parts.h"
 
 #include "kernels/contact/contact_memory.h"
+#include "kernels/particle/particle_words.h"
 #include "particle/particles.h"
 
 /* What the program of pairs is built with. */
 #define HAS(flag) feature_table_option(features_table, features, FEATURES_PAIR, "WITH_" #flag)
-
-enum { ROW_FOUND = 32 }; /* as in kernels/particle/rows.cl */
 
 /* Two generations of lists and of what contacts remember, one of results and losses. Rows list a
  * pair twice, with index and gid. */

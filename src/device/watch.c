@@ -19,7 +19,7 @@ void watch_vote(struct watch *w, const struct comm *comm, int32_t own)
 {
     if (w->read) {
         wait_read(w);
-        own |= (w->flag[0] ? WATCH_STALE : 0) | (w->flag[1] ? WATCH_LOST : 0);
+        own |= (w->flag[FLAG_STALE] ? WATCH_STALE : 0) | (w->flag[FLAG_LOST] ? WATCH_LOST : 0);
     }
     comm_vote_begin(comm, &w->vote, own);
 }

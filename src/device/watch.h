@@ -9,6 +9,7 @@
 #define DEMOCLES_WATCH_H
 
 #include "buffer.h"
+#include "kernels/common/flags.h"
 
 enum { WATCH_STALE = 1, WATCH_LOST = 2, WATCH_STOP = 4 };
 /* Each look costs a copy and a message. The margin, in steps' way: those until the host acts, and
@@ -22,8 +23,8 @@ static inline bool watch_due(int64_t step)
 }
 
 struct watch {
-    cl_event read;   /* of the flags after the last drift */
-    int32_t flag[2]; /* where they go: stale, lost */
+    cl_event read;        /* of the flags after the last drift */
+    int32_t flag[FLAG_N]; /* where they go */
     struct comm_vote vote;
 };
 

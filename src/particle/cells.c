@@ -5,8 +5,9 @@
 #include <string.h>
 
 #include "comm/fail.h"
+#include "kernels/particle/particle_words.h"
 
-enum { BOUNDS_WIDTH = 9, BOUNDS_GROUPS = 64, GROUP = 64, GRID_REALS = 7, GRID_INTS = 4 };
+enum { BOUNDS_GROUPS = 64 };
 
 struct cells *cells_create(struct device *dev, const struct features *features,
     const struct program *lists, const double period[3], const double domain[6])
@@ -68,7 +69,7 @@ struct cells_bounds cells_bounds(struct cells *c, const struct particles *p, int
     launch_bind_buffer(c->bounds, "position", &p->field[FIELD_STATE].now);
     launch_bind_buffer(c->bounds, "motion", &p->field[FIELD_STATE].now);
     launch_bind_buffer(c->bounds, "reach", &p->reach);
-    launch_run(c->bounds, BOUNDS_GROUPS * GROUP);
+    launch_run(c->bounds, BOUNDS_GROUPS * SELECT_GROUP);
     double *part =
         reals_read(&c->partial, c->features->position_is_float, 0, BOUNDS_GROUPS * BOUNDS_WIDTH);
     for (int g = 0; g < BOUNDS_GROUPS; g++) {

@@ -3,6 +3,7 @@
 #ifndef DEMOCLES_CONTACT_STORE_H
 #define DEMOCLES_CONTACT_STORE_H
 
+#include "kernels/contact/contact_state.h"
 #include "kernels/contact/ledger.h"
 #include "device/launch.h"
 

@@ -4,9 +4,9 @@
 #include <string.h>
 
 #include "comm/fail.h"
+#include "kernels/particle/particle_words.h"
 
-/* the first two as in kernels/particle/pairs.cl, rows.cl */
-enum { PAIR_ALIGN = 64, ROW_FOUND = 32, LIST_BUFFERS = 11 };
+enum { LIST_BUFFERS = 11 };
 
 static void list_buffers(struct pair_list *l, struct buffer *all[LIST_BUFFERS])
 {

@@ -108,7 +108,7 @@ static void *make_coordination(struct sim *s)
         cl_int *element = fail_alloc(m * sizeof *element), *bits = fail_alloc(m * sizeof *bits);
         buffer_read(&run->wall_contacts->now.element, 0, m * sizeof *element, element);
         buffer_read(&run->wall_contacts->now.state, 0, m * sizeof *bits, bits);
-        for (size_t k = 0; k < m; k++) count[element[k]] += bits[k] & 1;
+        for (size_t k = 0; k < m; k++) count[element[k]] += (bits[k] & CONTACT_TOUCHING) != 0;
         free(element);
         free(bits);
     }

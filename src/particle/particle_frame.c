@@ -33,7 +33,7 @@ static int total_tables(struct sim *s, struct sheet *t, struct table *table)
 }
 
 /* Flags that some drift has set and that nobody has acted on yet. Collective. */
-static void flags_now(struct sim *s, int32_t flag[2])
+static void flags_now(struct sim *s, int32_t flag[FLAG_N])
 {
     buffer_read(&s->particle->particles->flags, 0, 2 * sizeof *flag, flag);
     comm_or_i32(s->comm, flag, 2);
@@ -46,7 +46,7 @@ void particle_frame(struct sim *s, int64_t index)
     struct particles_host *h =
         particles_download(run->particles, &run->features, s->scene, run->first);
     struct sheet *sheet = fail_alloc(SHEETS * sizeof *sheet);
-    int32_t flag[2];
+    int32_t flag[FLAG_N];
     flags_now(s, flag);
     particle_fields_show(s, &sheet[0], h);
     particle_fields_state(s, &sheet[1], h);
@@ -57,8 +57,8 @@ void particle_frame(struct sim *s, int64_t index)
         {"wall_contacts", n_wall, sheet[3].column, sheet[3].n}};
     int n_state = 3 + total_tables(s, &sheet[4], state + 3);
     struct frame_scalar scalar[OWN_SCALARS + RESUME_SCALARS] = {{"skin", COLUMN_F64, run->skin, 0},
-        {"built_at", COLUMN_I64, 0, run->built_at}, {"stale", COLUMN_I64, 0, flag[0]},
-        {"lost", COLUMN_I64, 0, flag[1]}};
+        {"built_at", COLUMN_I64, 0, run->built_at}, {"stale", COLUMN_I64, 0, flag[FLAG_STALE]},
+        {"lost", COLUMN_I64, 0, flag[FLAG_LOST]}};
     resume_note(s, scalar + OWN_SCALARS);
     struct frame frame = {.step = s->step,
         .time = (double)s->step * s->dt,

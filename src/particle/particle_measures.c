@@ -7,6 +7,7 @@
 
 #include "energy.h"
 #include "comm/fail.h"
+#include "kernels/particle/particle_words.h"
 #include "run/measures.h"
 #include "run/output.h"
 #include "scene/measure_columns.h"
@@ -66,8 +67,8 @@ static int64_t sum_at_wall(
     struct particle_run *run = s->particle;
     const struct wall_contacts *w = run->wall_contacts;
     int64_t sum[7] = {0};
-    /* WALL_RESULT_WIDTH of wall_force.cl, whatever that of pairs */
-    size_t n = w ? (size_t)w->now.n : 0, width = w && w->layout.result > 4 ? 8 : 4;
+    size_t n = w ? (size_t)w->now.n : 0,
+           width = WALL_RESULT_WIDTH(w && w->layout.result > WALL_RESULT_WIDTH(false));
     cl_int *candidate = fail_alloc(n * sizeof *candidate),
            *element = fail_alloc(n * sizeof *element);
     double *result =

@@ -103,8 +103,8 @@ static void restore_energy(struct sim *s)
 static void restore_flags(struct sim *s)
 {
     struct particle_run *run = s->particle;
-    cl_int flag[2] = {(cl_int)h5_read_i64(s->from->reader, "stale"),
-        (cl_int)h5_read_i64(s->from->reader, "lost")};
+    cl_int flag[FLAG_N] = {[FLAG_STALE] = (cl_int)h5_read_i64(s->from->reader, "stale"),
+        [FLAG_LOST] = (cl_int)h5_read_i64(s->from->reader, "lost")};
     buffer_write(&run->particles->flags, 0, sizeof flag, flag);
     if (!watch_due(s->step)) return;
     watch_read(&s->watch, &run->particles->flags);

@@ -32,7 +32,7 @@ struct particles *particles_create(
     buffer_init(&p->force, dev, "force");
     buffer_init(&p->torque, dev, "torque");
     buffer_init(&p->flags, dev, "flags");
-    buffer_reserve(&p->flags, 2 * sizeof(cl_int));
+    buffer_reserve(&p->flags, FLAG_N * sizeof(cl_int));
     p->gather = launch_create(lists, "record_gather");
     p->copy = launch_create(lists, "record_copy");
     return p;

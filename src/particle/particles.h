@@ -9,6 +9,7 @@
 #include "features.h"
 #include "device/launch.h"
 #include "device/reals.h"
+#include "kernels/common/flags.h"
 
 enum { FIELD_STATE, FIELD_GID, FIELD_ORIENTATION, FIELD_N };
 
@@ -27,7 +28,7 @@ struct particles {
     struct buffer reference;
     struct buffer reach;          /* preal [n_owned + n_ghost]: listing reach [m] */
     struct buffer force, torque;  /* real [n_owned][4] of the last observed step [N], [N m] */
-    struct buffer flags;          /* int [2]: lists stale, elements lost */
+    struct buffer flags;          /* int [FLAG_N] */
     struct launch *gather, *copy; /* records by index; words */
 };
 

@@ -5,8 +5,9 @@
 #include <string.h>
 
 #include "comm/fail.h"
+#include "kernels/particle/particle_words.h"
 
-enum { POSE_WIDTH = 22, LIST_BUFFERS = 5, OWN_BUFFERS = 11 };
+enum { LIST_BUFFERS = 5, OWN_BUFFERS = 11 };
 
 static void list_buffers(struct wall_list *l, struct buffer *all[LIST_BUFFERS])
 {
@@ -201,7 +202,7 @@ static void reserve_contacts(struct wall_contacts *w)
     buffer_reserve(&l->candidate, capacity * sizeof(cl_int));
     buffer_reserve(&l->element, capacity * sizeof(cl_int));
     buffer_reserve(&w->keep, capacity * sizeof(cl_int));
-    buffer_reserve(&w->result, capacity * 8 * real);
+    buffer_reserve(&w->result, capacity * WALL_RESULT_WIDTH(true) * real);
     if (w->layout.remembers) {
         buffer_reserve(&l->state, capacity * sizeof(cl_int));
         buffer_reserve(&l->history, capacity * (size_t)w->layout.history * real);
@@ -237,7 +238,7 @@ void wall_contacts_build(struct wall_contacts *w, struct scan *scan, const struc
     launch_set_int(w->rows, "fill", 0);
     launch_run(w->rows, l->n_owned);
     l->n = scan_total(scan, &l->begin, l->n_owned);
-    l->capacity = (l->n + 63) / 64 * 64 + 16;
+    l->capacity = (l->n + PAIR_ALIGN - 1) / PAIR_ALIGN * PAIR_ALIGN + 16;
     reserve_contacts(w);
     launch_set_int(w->rows, "fill", 1);
     launch_run(w->rows, l->n_owned);
