@@ -96,8 +96,8 @@ double contact_table_pull(const double *row, double r_star)
     double from = contact_table_reach(row, r_star), to = 0;
     for (int k = 0; k < 100; k++) {
         double a = from + golden * (to - from), b = to + golden * (from - to);
-        if (normal_spring_of(-a, p).force < normal_spring_of(-b, p).force) to = b;
-        else from = a;
+        if (normal_spring_of(-a, p).force < normal_spring_of(-b, p).force) from = b;
+        else to = a;
     }
     return fmax(0, -normal_spring_of(-from, p).force);
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "comm/fail.h"
+#include "particle/contact_table.h"
 #include "particle/limit.h"
 
 static struct material mortar = {.name = "mortar", .density = 2200, .young = 1e7, .poisson = 0.2};
@@ -200,10 +201,25 @@ static void advice(void **state)
     assert_int_equal(warnings(&b, 2.8e-5, 1e-3, NULL), 0); /* nothing is that fast */
 }
 
+/* What the lists and `check` ask of the law: F_b/k and F_b of a bond; nothing of a plain contact. */
+static void reach_and_pull(void **state)
+{
+    (void)state;
+    struct contact bonded = linear;
+    bonded.binding_force = 5e-3;
+    struct scene plain = scene_of(&linear), bond = scene_of(&bonded);
+    double row[MATERIAL_WIDTH];
+    contact_table_material(&plain, 0, 0, row);
+    assert_true(contact_table_reach(row, 1e-3) <= 0 && contact_table_pull(row, 1e-3) <= 0);
+    contact_table_material(&bond, 0, 0, row);
+    assert_near(contact_table_reach(row, 1e-3) / (5e-3 / linear.stiffness), 1, 1e-12);
+    assert_near(contact_table_pull(row, 1e-3) / 5e-3, 1, 1e-12);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(equal_spheres), cmocka_unit_test(numbers),
         cmocka_unit_test(mixed_sizes), cmocka_unit_test(stiff_wall), cmocka_unit_test(hertz_impact),
-        cmocka_unit_test(speeds), cmocka_unit_test(advice)};
+        cmocka_unit_test(speeds), cmocka_unit_test(advice), cmocka_unit_test(reach_and_pull)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
