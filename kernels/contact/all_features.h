@@ -16,7 +16,8 @@
     X(tangential_damping, TANGENTIAL_DAMPING, c.mu > 0 && c.gamma_t > 0)                           \
     X(rolling_cdt, ROLLING_CDT, c.mu_r > 0 && !(c.k_r > 0))                                        \
     X(rolling_epsd, ROLLING_EPSD, c.k_r > 0)                                                       \
-    X(binding, BINDING, c.f_b > 0)
+    X(binding, BINDING, c.f_b > 0)                                                                 \
+    X(jkr, JKR, c.jkr > 0)
 
 #ifndef WITH_LINEAR
 #define WITH_LINEAR 1
@@ -27,6 +28,7 @@
 #define WITH_ROLLING_CDT 1
 #define WITH_ROLLING_EPSD 1
 #define WITH_BINDING 1
+#define WITH_JKR 1
 #define WITH_ENERGY 1 /* no feature of a law: losses are accounted for */
 #endif
 

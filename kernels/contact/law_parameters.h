@@ -30,6 +30,7 @@
     X(real, gamma_t) /* gamma_t/(S m*)^(1/2): 2 z_t (2 k_t/7)^(1/2) */                             \
     X(real, mu)      /* friction [1]; 0: none */                                                   \
     X(real, f_b)     /* binding force [N]; 0: none */                                              \
+    X(real, jkr)     /* JKR: (2 pi w/E*)^(2/3) [m^(2/3)], w the work of adhesion; 0: none */       \
     X(real, mu_r)    /* rolling friction [1]; 0: none */                                           \
     X(real, k_r)     /* EPSD: k_r/(S R*^2); 0: CDT */                                              \
     X(real, c_r)     /* EPSD: C_r/(S R*^2 I*)^(1/2) */                                             \
@@ -55,6 +56,7 @@ struct contact_pair {
     X(real, damp_t)     /* linear: 1/(1 + centring_t) */                                           \
     X(real, mu)         /* [1] */                                                                  \
     X(real, f_b)        /* [N] */                                                                  \
+    X(real, jkr)        /* JKR: L = (2 pi w R*^(1/2)/E*)^(2/3) [m]; 0: none */                     \
     X(real, roll_limit) /* mu_r R* [m] */                                                          \
     X(real, roll_stop) /* CDT: 1/(dt (1/I_i + 1/I_j)) [N m s]: moment per spin to stop it in dt */ \
     X(real, k_r)       /* EPSD: [N m] / [N m^0.5]; 0: CDT */                                       \
@@ -162,6 +164,18 @@ LAW struct contact_pair contact_pair_wall(real inverse_m, real r)
     return s;
 }
 
+/* x^(1/3) from + * / sqrt, so with the same bits everywhere: 1/3 = 1/4 + 1/16 + 1/64 + ..., then
+ * Newton; for x from 1e-12 to 1 to rounding. */
+LAW real r_cube_root(real x)
+{
+    real q = r_sqrt(r_sqrt(x)), q4 = r_sqrt(r_sqrt(q));
+    real y = q * q4 * r_sqrt(r_sqrt(q4));
+    y = ((real)2 * y + x / (y * y)) * ((real)1 / (real)3);
+    y = ((real)2 * y + x / (y * y)) * ((real)1 / (real)3);
+    y = ((real)2 * y + x / (y * y)) * ((real)1 / (real)3);
+    return ((real)2 * y + x / (y * y)) * ((real)1 / (real)3);
+}
+
 /* dt [s]. Members that no compiled feature uses may hold anything finite. */
 LAW struct contact_parameters contact_parameters_of(
     struct contact_material c, struct contact_pair s, real dt)
@@ -183,6 +197,7 @@ LAW struct contact_parameters contact_parameters_of(
     p.damp_t = p.centring_t > 0 ? both * ((real)1 + p.centring_n) : (real)1;
     p.mu = c.mu;
     p.f_b = c.f_b;
+    p.jkr = WITH_JKR ? c.jkr * r_cube_root(s.r_star) : (real)0;
     p.roll_limit = c.mu_r * s.r_star;
     p.roll_stop = (real)0.4 * s.i_star / dt;
     p.k_r = size * s.r_star * s.r_star * c.k_r;

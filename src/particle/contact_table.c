@@ -36,6 +36,7 @@ static struct contact_material material_of(const struct scene *scene, const stru
         double g = 1 / ((2 - a->poisson) / shear(a) + (2 - b->poisson) / shear(b));
         p = contact_material_hertz(
             e, g, c->damping_ratio, c->has_tangential ? c->stiffness_ratio : 0, z_t);
+        p.jkr = pow(2 * M_PI * c->adhesion_work / e, 2.0 / 3);
     }
     p.mu = c->has_tangential ? c->friction : 0;
     p.f_b = c->binding_force;

@@ -72,6 +72,7 @@ struct contact {
     double rolling_damping;   /* eta_r [1], EPSD */
     double rolling_stiffness; /* k_r/(k_n (mu_r R*)^2) [1], EPSD, default 2.25 */
     double binding_force;     /* F_b [N]; 0: none */
+    double adhesion_work;     /* w [J/m2], JKR; 0: none */
 };
 
 enum region_kind { REGION_ALL, REGION_BOX, REGION_CYLINDER, REGION_SPHERE, REGION_STL };

@@ -31,7 +31,9 @@ static inline struct contact contact_scene_contact(int a, int b)
     c.rolling_friction = 0.1;
     c.rolling_stiffness = 2.25;
     c.rolling_damping = 0.2;
-    c.binding_force = WITH_BINDING && k != 2 ? 0.1 : 0;
+    c.binding_force = WITH_BINDING && k != 2 && !(WITH_JKR && k == 1) ? 0.1 : 0;
+    c.adhesion_work =
+        WITH_JKR && c.normal_law == NORMAL_HERTZ && !(c.binding_force > 0) ? 0.5 : 0; /* J/m2 */
     return c;
 }
 

@@ -65,7 +65,7 @@ void force_history(int *state, real *history, size_t capacity, size_t at)
 {
     state[at] = 0;
     if (!WITH_HISTORY || at % 3 == 1) return;
-    state[at] = CONTACT_TOUCHING | (WITH_BINDING ? CONTACT_BONDED : 0);
+    state[at] = CONTACT_TOUCHING | (WITH_COHESION ? CONTACT_BONDED : 0);
     for (size_t c = 0; c < 3; c++) {
         if (WITH_TANGENTIAL) history[(XI_AT + c) * capacity + at] = (real)(1e-5 * force_any());
         if (WITH_ROLLING_EPSD) history[(THETA_AT + c) * capacity + at] = (real)(1e-3 * force_any());
