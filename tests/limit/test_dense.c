@@ -196,12 +196,12 @@ static void advice(void **state)
     assert_int_equal(warnings(&s, 4.1e-5, 7, "of the smallest radius in one time step"), 1);
     assert_int_equal(warnings(&b, 2.6e-5, 3, NULL), 0);
     assert_int_equal(warnings(&b, 2.8e-5, 3,
-                         "bonds reach 5e-06 m (binding force over stiffness); at 0.0186 m/s"),
+                         "bonds act up to a gap of 5e-06 m (pull-off force over stiffness)"),
         1);
     assert_int_equal(warnings(&b, 2.8e-5, 1e-3, NULL), 0); /* nothing is that fast */
 }
 
-/* What the lists and `check` ask of the law: F_b/k and F_b of a bond; nothing of a plain contact. */
+/* What lists and `check` ask of the law: F_b/k and F_b of a bond; 0 of a plain contact. */
 static void reach_and_pull(void **state)
 {
     (void)state;
