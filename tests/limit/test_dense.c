@@ -195,8 +195,8 @@ static void advice(void **state)
         warnings(&s, 4.3e-5, 3, "the shortest contact lasts 0.000843 s, 19.6 time steps"), 1);
     assert_int_equal(warnings(&s, 4.1e-5, 7, "of the smallest radius in one time step"), 1);
     assert_int_equal(warnings(&b, 2.6e-5, 3, NULL), 0);
-    assert_int_equal(warnings(&b, 2.8e-5, 3,
-                         "bonds act up to a gap of 5e-06 m (pull-off force over stiffness)"),
+    assert_int_equal(
+        warnings(&b, 2.8e-5, 3, "bonds act up to a gap of 5e-06 m (pull-off force over stiffness)"),
         1);
     assert_int_equal(warnings(&b, 2.8e-5, 1e-3, NULL), 0); /* nothing is that fast */
 }
