@@ -1,20 +1,19 @@
 /* What `democles check` prints of a scene of either method. */
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "check_parts.h"
-#include "scene/scene.h"
+#include "scene/scene_keys.h"
 
 void check_head(const struct scene *scene)
 {
-    static const char *const precision[] = {[PRECISION_DEFAULT] = "double",
-        [PRECISION_DOUBLE] = "double",
-        [PRECISION_MIXED] = "mixed",
-        [PRECISION_SINGLE] = "single"};
+    char *precision = scene_key_word("precision", (int)scene->precision);
     const char *method = scene->method == METHOD_LATTICE ? "lattice" : "particles";
     printf("%s\n", scene->title && *scene->title ? scene->title : scene->name);
-    printf("    %s: %s in %s precision, hash %016lx\n", scene->path, method,
-        precision[scene->precision], scene->hash);
+    printf(
+        "    %s: %s in %s precision, hash %016lx\n", scene->path, method, precision, scene->hash);
+    free(precision);
     printf(
         "    gravity (%g, %g, %g) m/s2", scene->gravity[0], scene->gravity[1], scene->gravity[2]);
     for (int a = 0; a < 3; a++)

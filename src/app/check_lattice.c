@@ -8,6 +8,7 @@
 #include "lattice/lattice_input.h"
 #include "lattice/lattice_frequency.h"
 #include "lattice/lattice_loads.h"
+#include "laws/lattice_schemes.h"
 #include "scene/scene_report.h"
 
 static int64_t count_links(const struct lattice_cells *cells, int body)
@@ -70,7 +71,6 @@ static bool may_break(const struct scene *scene)
 
 static void print_time(const struct scene *scene, const struct lattice_cells *cells)
 {
-    static const char *const scheme[] = {"leapfrog", "rk4", "rkn4", "pefrl", "vefrl"};
     const struct scene_time *time = &scene->time;
     double largest = lattice_frequency_largest(scene, cells),
            zeta = lattice_frequency_damping(scene, cells, largest);
@@ -82,7 +82,7 @@ static void print_time(const struct scene *scene, const struct lattice_cells *ce
         dt);
     if (time->step > 0) printf("as given");
     else printf("%g of the critical time step", time->safety);
-    printf(", by %s", scheme[time->scheme]);
+    printf(", by %s", lattice_schemes_table((enum lattice_scheme)time->scheme)->name);
     if (scene->lattice.relax)
         printf(", or until the residual force is below %g (static equilibrium)",
             scene->lattice.tolerance);

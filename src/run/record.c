@@ -10,6 +10,7 @@
 #include "laws/lattice_schemes.h"
 #include "results/report.h"
 #include "resume.h"
+#include "scene/scene_keys.h"
 #include "version.h"
 
 static void add_devices(struct report *r, const struct sim *s)
@@ -160,7 +161,7 @@ void record_features(struct report *report, const struct feature_row *row, const
 bool record_write(struct sim *s, int exit_code, bool observed)
 {
     char digest[17] = "";
-    static const char *const precision[] = {"double", "double", "mixed", "single"};
+    char *precision = scene_key_word("precision", (int)s->scene->precision);
     struct report *r = report_create();
     uint64_t bits = 0;
     bool whole = observed && s->ops->digest(s, &bits);
@@ -172,7 +173,8 @@ bool record_write(struct sim *s, int exit_code, bool observed)
     report_text(r, "scene_hash", hash);
     report_text(r, "title", s->scene->title);
     report_text(r, "method", s->ops->name);
-    report_text(r, "precision", precision[s->scene->precision]);
+    report_text(r, "precision", precision);
+    free(precision);
     /* particles: leapfrog */
     report_text(
         r, "scheme", lattice_schemes_table((enum lattice_scheme)s->scene->time.scheme)->name);

@@ -3,12 +3,23 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "comm/fail.h"
 #include "scene_keys.h"
 
 const char *scene_key_name(const struct scene_key *key)
 {
     const char *dot = strrchr(key->path, '.');
     return dot ? dot + 1 : key->path;
+}
+
+char *scene_key_word(const char *path, int value)
+{
+    const struct scene_key *key = scene_keys;
+    while (strcmp(key->path, path)) key++;
+    const char *word = key->words;
+    for (int k = 0; k < value; k++) word = strchr(word, '|') + 1;
+    size_t n = strcspn(word, "|");
+    return n > 0 ? fail_format("%.*s", (int)n, word) : fail_strdup(key->fallback);
 }
 
 bool scene_key_is_child(const struct scene_key *key, const char *pattern)

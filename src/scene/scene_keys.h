@@ -101,6 +101,9 @@ extern const int scene_keys_n;
 
 /* The key's own word: "law" of "contacts[].normal.law". */
 const char *scene_key_name(const struct scene_key *key);
+/* The word of a KEY_CHOICE for a stored value, the default for one that cannot be chosen; owned by
+ * the caller. */
+char *scene_key_word(const char *path, int value);
 /* Whether the key stands directly below the pattern ("" is the root, "contacts[]" an entry). */
 bool scene_key_is_child(const struct scene_key *key, const char *pattern);
 /* Whether it is stored in the record that `pattern` opens: below it at any depth, but not in a list
