@@ -4,8 +4,7 @@
 #include <stdlib.h>
 
 #include "comm/fail.h"
-
-enum { SCRATCH = 8 };
+#include "device/buffers.h"
 
 /* Pairs that one side computes for the other, and what it needs for them. */
 struct side {
@@ -30,12 +29,14 @@ struct assigned {
     struct launch *rule, *order, *link, *list, *use, *pick, *number;
 };
 
-static void scratch(struct assigned *a, struct buffer *all[SCRATCH])
-{
-    struct buffer *b[SCRATCH] = {
-        &a->segment, &a->range, &a->theirs, &a->copy, &a->place, &a->ghost, &a->begin, &a->used};
-    for (int i = 0; i < SCRATCH; i++) all[i] = b[i];
-}
+static const struct buffer_spec buffers[] = {{"segments", offsetof(struct assigned, segment)},
+    {"segment range", offsetof(struct assigned, range)},
+    {"pairs of others", offsetof(struct assigned, theirs)},
+    {"boundary copy", offsetof(struct assigned, copy)},
+    {"boundary place", offsetof(struct assigned, place)},
+    {"ghost numbers", offsetof(struct assigned, ghost)},
+    {"pairs begin", offsetof(struct assigned, begin)},
+    {"elements used", offsetof(struct assigned, used)}, {0}};
 
 static void side_init(struct device *dev, struct side *side, int n_rank)
 {
@@ -61,19 +62,12 @@ struct assigned *assigned_create(struct device *dev, const struct comm *comm,
     static const char *const exchanged[ASSIGNED_N][4] = {
         {"states packed", "states arrived", "states send", "states receive"},
         {"results packed", "results arrived", "results send", "results receive"}};
-    static const char *const name[] = {"segments", "segment range", "pairs of others",
-        "boundary copy", "boundary place", "ghost numbers", "pairs begin", "elements used"};
     struct assigned *a = fail_alloc(sizeof *a);
-    struct buffer *all[SCRATCH];
     a->comm = comm;
     a->real = real;
     side_init(dev, &a->here, comm->n_rank);
     side_init(dev, &a->there, comm->n_rank);
-    scratch(a, all);
-    for (int i = 0; i < SCRATCH; i++) {
-        buffer_init(all[i], dev, name[i]);
-        buffer_reserve(all[i], 0);
-    }
+    buffers_create(dev, a, buffers);
     for (int w = 0; w < ASSIGNED_N; w++) {
         exchange_init(&a->exchange[w], dev, exchanged[w]);
         a->pack[w] = launch_create(assign, "assign_move");
@@ -92,7 +86,6 @@ struct assigned *assigned_create(struct device *dev, const struct comm *comm,
 void assigned_free(struct assigned *a)
 {
     if (!a) return;
-    struct buffer *all[SCRATCH];
     struct launch *launch[] = {a->rule, a->order, a->link, a->list, a->use, a->pick, a->number};
     for (int w = 0; w < ASSIGNED_N; w++) {
         exchange_free(&a->exchange[w]);
@@ -101,8 +94,7 @@ void assigned_free(struct assigned *a)
     }
     side_free(&a->here);
     side_free(&a->there);
-    scratch(a, all);
-    for (int i = 0; i < SCRATCH; i++) buffer_free(all[i]);
+    buffers_free(a, buffers);
     for (size_t i = 0; i < sizeof launch / sizeof *launch; i++) launch_free(launch[i]);
     free(a);
 }

@@ -5,22 +5,23 @@
 #include <string.h>
 
 #include "comm/fail.h"
+#include "device/buffers.h"
 #include "kernels/particle/particle_words.h"
 
 enum { BOUNDS_GROUPS = 64 };
+
+static const struct buffer_spec buffers[] = {{"grid", offsetof(struct cells, grid_real)},
+    {"grid, integers", offsetof(struct cells, grid_int)},
+    {"cell of element", offsetof(struct cells, key)}, {"cell begin", offsetof(struct cells, begin)},
+    {"cell cursor", offsetof(struct cells, cursor)},
+    {"cell member", offsetof(struct cells, member)}, {"bounds", offsetof(struct cells, partial)},
+    {0}};
 
 struct cells *cells_create(struct device *dev, const struct features *features,
     const struct program *lists, const double period[3], const double domain[6])
 {
     struct cells *c = fail_alloc(sizeof *c);
-    struct buffer *all[] = {
-        &c->grid_real, &c->grid_int, &c->key, &c->begin, &c->cursor, &c->member, &c->partial};
-    static const char *const name[] = {"grid", "grid, integers", "cell of element", "cell begin",
-        "cell cursor", "cell member", "bounds"};
-    for (int i = 0; i < 7; i++) {
-        buffer_init(all[i], dev, name[i]);
-        buffer_reserve(all[i], 0);
-    }
+    buffers_create(dev, c, buffers);
     c->features = features;
     memcpy(c->period, period, sizeof c->period);
     memcpy(c->domain, domain, sizeof c->domain);
@@ -52,9 +53,7 @@ struct cells *cells_create(struct device *dev, const struct features *features,
 void cells_free(struct cells *c)
 {
     if (!c) return;
-    struct buffer *all[] = {
-        &c->grid_real, &c->grid_int, &c->key, &c->begin, &c->cursor, &c->member, &c->partial};
-    for (int i = 0; i < 7; i++) buffer_free(all[i]);
+    buffers_free(c, buffers);
     struct launch *launch[] = {c->bounds, c->count, c->fill, c->order, c->copy};
     for (int i = 0; i < 5; i++) launch_free(launch[i]);
     free(c);

@@ -5,23 +5,20 @@
 
 #include "comm/migrate.h"
 #include "comm/fail.h"
+#include "device/buffers.h"
 #include "owners_message.h"
+
+static const struct buffer_spec buffers[] = {{"cut tree", offsetof(struct owners, node)}, {"cuts", offsetof(struct owners, cut)}, {"domain", offsetof(struct owners, domain)}, {"owner", offsetof(struct owners, owner)}, {"stay", offsetof(struct owners, stay)}, {"leave", offsetof(struct owners, leave)}, {"leaving", offsetof(struct owners, index)}, {"old index", offsetof(struct owners, old_index)}, {"picked", offsetof(struct owners, picked)}, {0}};
 
 struct owners *owners_create(struct device *dev, const struct comm *comm,
     const struct features *features, const struct program *lists, const double period[3],
     const double domain[6])
 {
     struct owners *o = fail_alloc(sizeof *o);
-    struct buffer *all[] = {&o->node, &o->cut, &o->domain, &o->owner, &o->stay, &o->leave,
-        &o->index, &o->old_index, &o->picked};
-    static const char *const name[] = {
-        "cut tree", "cuts", "domain", "owner", "stay", "leave", "leaving", "old index", "picked"};
     o->comm = comm;
     o->features = features;
-    for (int i = 0; i < 9; i++) {
-        buffer_init(all[i], dev, name[i]);
-        buffer_reserve(all[i], 64);
-    }
+    buffers_create(dev, o, buffers);
+    buffer_reserve(&o->domain, 6 * particles_preal(features));
     reals_write(&o->domain, features->position_is_float, 0, 6, domain);
     o->select = launch_create(lists, "select_owner");
     o->compact = launch_create(lists, "record_select");
@@ -38,9 +35,7 @@ struct owners *owners_create(struct device *dev, const struct comm *comm,
 void owners_free(struct owners *o)
 {
     if (!o) return;
-    struct buffer *all[] = {&o->node, &o->cut, &o->domain, &o->owner, &o->stay, &o->leave,
-        &o->index, &o->old_index, &o->picked};
-    for (int i = 0; i < 9; i++) buffer_free(all[i]);
+    buffers_free(o, buffers);
     struct launch *launch[] = {o->select, o->compact, o->number, o->gather};
     for (int i = 0; i < 4; i++) launch_free(launch[i]);
     free(o->removed);

@@ -4,29 +4,25 @@
 #include <string.h>
 
 #include "comm/fail.h"
+#include "device/buffers.h"
 #include "kernels/particle/particle_words.h"
 
-enum { LIST_BUFFERS = 11 };
-
-static void list_buffers(struct pair_list *l, struct buffer *all[LIST_BUFFERS])
-{
-    struct buffer *b[LIST_BUFFERS] = {&l->row_begin, &l->row, &l->row_gid, &l->split, &l->up_begin,
-        &l->incidence_begin, &l->incidence, &l->pair_i, &l->pair_j, &l->state, &l->history};
-    memcpy(all, b, sizeof b);
-}
-
-static void list_init(struct device *dev, struct pair_list *l)
-{
-    static const char *const name[LIST_BUFFERS] = {"row begin", "rows", "row gids", "row split",
-        "up begin", "incidence begin", "incidence", "pair i", "pair j", "pair state",
-        "pair history"};
-    struct buffer *all[LIST_BUFFERS];
-    list_buffers(l, all);
-    for (int i = 0; i < LIST_BUFFERS; i++) {
-        buffer_init(all[i], dev, name[i]);
-        buffer_reserve(all[i], 64);
-    }
-}
+static const struct buffer_spec list_buffers[] = {
+    {"row begin", offsetof(struct pair_list, row_begin)}, {"rows", offsetof(struct pair_list, row)},
+    {"row gids", offsetof(struct pair_list, row_gid)},
+    {"row split", offsetof(struct pair_list, split)},
+    {"up begin", offsetof(struct pair_list, up_begin)},
+    {"incidence begin", offsetof(struct pair_list, incidence_begin)},
+    {"incidence", offsetof(struct pair_list, incidence)},
+    {"pair i", offsetof(struct pair_list, pair_i)}, {"pair j", offsetof(struct pair_list, pair_j)},
+    {"pair state", offsetof(struct pair_list, state)},
+    {"pair history", offsetof(struct pair_list, history)}, {0}};
+static const struct buffer_spec own_buffers[] = {
+    {"interior pairs", offsetof(struct pairs, interior)},
+    {"boundary pairs", offsetof(struct pairs, boundary)},
+    {"pair results", offsetof(struct pairs, result)},
+    {"pair ledger", offsetof(struct pairs, ledger)},
+    {"neighbours found", offsetof(struct pairs, found)}, {0}};
 
 struct pairs *pairs_create(struct device *dev, const struct features *features,
     const struct program *lists, const struct program *force)
@@ -34,17 +30,10 @@ struct pairs *pairs_create(struct device *dev, const struct features *features,
     struct pairs *pairs = fail_alloc(sizeof *pairs);
     pairs->features = features;
     pairs->layout = contact_layout(dev, force);
-    list_init(dev, &pairs->now);
-    list_init(dev, &pairs->old);
+    buffers_create(dev, &pairs->now, list_buffers);
+    buffers_create(dev, &pairs->old, list_buffers);
     contact_arrivals_init(dev, &pairs->arrivals, "arrived pairs");
-    struct buffer *own[] = {
-        &pairs->interior, &pairs->boundary, &pairs->result, &pairs->ledger, &pairs->found};
-    static const char *const name[] = {
-        "interior pairs", "boundary pairs", "pair results", "pair ledger", "neighbours found"};
-    for (int i = 0; i < 5; i++) {
-        buffer_init(own[i], dev, name[i]);
-        buffer_reserve(own[i], 64);
-    }
+    buffers_create(dev, pairs, own_buffers);
     pairs->rows = launch_create(lists, "rows");
     pairs->count = launch_create(lists, "pair_count");
     pairs->fill = launch_create(lists, "pair_fill");
@@ -57,16 +46,10 @@ struct pairs *pairs_create(struct device *dev, const struct features *features,
 void pairs_free(struct pairs *pairs)
 {
     if (!pairs) return;
-    struct buffer *all[LIST_BUFFERS];
-    struct pair_list *list[] = {&pairs->now, &pairs->old};
-    for (int k = 0; k < 2; k++) {
-        list_buffers(list[k], all);
-        for (int i = 0; i < LIST_BUFFERS; i++) buffer_free(all[i]);
-    }
+    buffers_free(&pairs->now, list_buffers);
+    buffers_free(&pairs->old, list_buffers);
+    buffers_free(pairs, own_buffers);
     contact_arrivals_free(&pairs->arrivals);
-    struct buffer *own[] = {
-        &pairs->interior, &pairs->boundary, &pairs->result, &pairs->ledger, &pairs->found};
-    for (int i = 0; i < 5; i++) buffer_free(own[i]);
     struct launch *launch[] = {
         pairs->rows, pairs->count, pairs->fill, pairs->link, pairs->carry, pairs->leave};
     for (int i = 0; i < 6; i++) launch_free(launch[i]);

@@ -5,47 +5,26 @@
 #include <string.h>
 
 #include "comm/fail.h"
+#include "device/buffers.h"
 #include "kernels/particle/particle_words.h"
 
-enum { LIST_BUFFERS = 5, OWN_BUFFERS = 11 };
-
-static void list_buffers(struct wall_list *l, struct buffer *all[LIST_BUFFERS])
-{
-    struct buffer *b[LIST_BUFFERS] = {
-        &l->begin, &l->candidate, &l->element, &l->state, &l->history};
-    memcpy(all, b, sizeof b);
-}
-
-static void own_buffers(struct wall_contacts *w, struct buffer *all[OWN_BUFFERS])
-{
-    struct buffer *b[OWN_BUFFERS] = {&w->primitive, &w->bounds, &w->triangle_features, &w->wall_of,
-        &w->material, &w->room, &w->pose, &w->keep, &w->result, &w->ledger, &w->batch};
-    memcpy(all, b, sizeof b);
-}
-
-static void init_buffers(struct device *dev, struct wall_contacts *w)
-{
-    static const char *const name[OWN_BUFFERS] = {"wall primitives", "wall bounds", "wall features",
-        "wall of primitive", "wall material", "wall room", "wall poses", "wall keep",
-        "wall results", "wall ledger", "wall pose batch"};
-    static const char *const list_name[LIST_BUFFERS] = {
-        "wall begin", "wall candidates", "wall candidate elements", "wall state", "wall history"};
-    struct buffer *own[OWN_BUFFERS], *list[LIST_BUFFERS];
-    struct wall_list *lists[] = {&w->now, &w->old};
-    own_buffers(w, own);
-    for (int i = 0; i < OWN_BUFFERS; i++) {
-        buffer_init(own[i], dev, name[i]);
-        buffer_reserve(own[i], 64);
-    }
-    for (int k = 0; k < 2; k++) {
-        list_buffers(lists[k], list);
-        for (int i = 0; i < LIST_BUFFERS; i++) {
-            buffer_init(list[i], dev, list_name[i]);
-            buffer_reserve(list[i], 64);
-        }
-    }
-    contact_arrivals_init(dev, &w->arrivals, "arrived wall contacts");
-}
+static const struct buffer_spec list_buffers[] = {{"wall begin", offsetof(struct wall_list, begin)},
+    {"wall candidates", offsetof(struct wall_list, candidate)},
+    {"wall candidate elements", offsetof(struct wall_list, element)},
+    {"wall state", offsetof(struct wall_list, state)},
+    {"wall history", offsetof(struct wall_list, history)}, {0}};
+static const struct buffer_spec own_buffers[] = {
+    {"wall primitives", offsetof(struct wall_contacts, primitive)},
+    {"wall bounds", offsetof(struct wall_contacts, bounds)},
+    {"wall features", offsetof(struct wall_contacts, triangle_features)},
+    {"wall of primitive", offsetof(struct wall_contacts, wall_of)},
+    {"wall material", offsetof(struct wall_contacts, material)},
+    {"wall room", offsetof(struct wall_contacts, room)},
+    {"wall poses", offsetof(struct wall_contacts, pose)},
+    {"wall keep", offsetof(struct wall_contacts, keep)},
+    {"wall results", offsetof(struct wall_contacts, result)},
+    {"wall ledger", offsetof(struct wall_contacts, ledger)},
+    {"wall pose batch", offsetof(struct wall_contacts, batch)}, {0}};
 
 static void upload_walls(struct wall_contacts *w, const struct scene *scene)
 {
@@ -88,7 +67,10 @@ struct wall_contacts *wall_contacts_create(struct device *dev, const struct comm
     w->comm = comm;
     w->dt = dt;
     w->layout = contact_layout(dev, force);
-    init_buffers(dev, w);
+    buffers_create(dev, w, own_buffers);
+    buffers_create(dev, &w->now, list_buffers);
+    buffers_create(dev, &w->old, list_buffers);
+    contact_arrivals_init(dev, &w->arrivals, "arrived wall contacts");
     upload_walls(w, scene);
     w->poses = fail_alloc(WALL_BATCH * (size_t)walls->n_wall * sizeof *w->poses);
     w->built = fail_alloc((size_t)walls->n_wall * sizeof *w->built);
@@ -108,14 +90,9 @@ struct wall_contacts *wall_contacts_create(struct device *dev, const struct comm
 void wall_contacts_free(struct wall_contacts *w)
 {
     if (!w) return;
-    struct buffer *own[OWN_BUFFERS], *list[LIST_BUFFERS];
-    struct wall_list *lists[] = {&w->now, &w->old};
-    own_buffers(w, own);
-    for (int i = 0; i < OWN_BUFFERS; i++) buffer_free(own[i]);
-    for (int k = 0; k < 2; k++) {
-        list_buffers(lists[k], list);
-        for (int i = 0; i < LIST_BUFFERS; i++) buffer_free(list[i]);
-    }
+    buffers_free(w, own_buffers);
+    buffers_free(&w->now, list_buffers);
+    buffers_free(&w->old, list_buffers);
     contact_arrivals_free(&w->arrivals);
     struct launch *launch[] = {w->rows, w->carry, w->leave, w->copy, w->keep_launch};
     for (int i = 0; i < 5; i++) launch_free(launch[i]);

@@ -1,0 +1,19 @@
+#include "buffers.h"
+
+static struct buffer *member(void *base, const struct buffer_spec *spec)
+{
+    return (struct buffer *)(void *)((char *)base + spec->offset);
+}
+
+void buffers_create(struct device *dev, void *base, const struct buffer_spec *spec)
+{
+    for (; spec->name; spec++) {
+        buffer_init(member(base, spec), dev, spec->name);
+        buffer_reserve(member(base, spec), 0);
+    }
+}
+
+void buffers_free(void *base, const struct buffer_spec *spec)
+{
+    for (; spec->name; spec++) buffer_free(member(base, spec));
+}
