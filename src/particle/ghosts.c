@@ -23,6 +23,7 @@ struct ghosts *ghosts_create(struct device *dev, const struct comm *comm,
     g->select = launch_create(lists, "select_ghosts");
     g->compact = launch_create(lists, "record_select");
     g->gather = launch_create(lists, "record_gather");
+    g->pack = launch_create(lists, "record_gather");
     launch_set_real_if(g->select, "period_x", period[0]);
     launch_set_real_if(g->select, "period_y", period[1]);
     launch_set_real_if(g->select, "period_z", period[2]);
@@ -38,6 +39,7 @@ void ghosts_free(struct ghosts *g)
     launch_free(g->select);
     launch_free(g->compact);
     launch_free(g->gather);
+    launch_free(g->pack);
     free(g);
 }
 
@@ -92,6 +94,17 @@ static int64_t select_for(struct ghosts *g, struct scan *scan, const struct part
     return n;
 }
 
+/* Rows of `from` picked by g->index to where they are sent from. */
+static void bind_gather(
+    struct ghosts *g, struct launch *gather, const struct buffer *from, size_t bytes)
+{
+    launch_set_int(gather, "n", (int)g->exchange.n_send);
+    launch_set_int(gather, "words", (int)(bytes / 4));
+    launch_bind_buffer(gather, "index", &g->index);
+    launch_bind_buffer(gather, "from", from);
+    launch_bind_buffer(gather, "to", &g->exchange.packed);
+}
+
 /* Sends rows of `from` picked by g->index to their neighbours and stores what comes in at row
  * n_owned of it. */
 static void exchange_rows(
@@ -101,11 +114,7 @@ static void exchange_rows(
     char *send = fail_alloc((size_t)x->n_send * bytes),
          *recv = fail_alloc((size_t)x->n_recv * bytes);
     buffer_reserve(&x->packed, (size_t)x->n_send * bytes);
-    launch_set_int(g->gather, "n", (int)x->n_send);
-    launch_set_int(g->gather, "words", (int)(bytes / 4));
-    launch_bind_buffer(g->gather, "index", &g->index);
-    launch_bind_buffer(g->gather, "from", from);
-    launch_bind_buffer(g->gather, "to", &x->packed);
+    bind_gather(g, g->gather, from, bytes);
     launch_run(g->gather, x->n_send);
     buffer_read(&x->packed, 0, (size_t)x->n_send * bytes, send);
     halo_exchange(x->halo, send, recv, bytes);
@@ -165,7 +174,8 @@ void ghosts_plan(struct ghosts *g, const struct owners *owners, struct scan *sca
     particles_reserve(p, g->features, p->n_owned + p->n_ghost, p->n_owned);
     exchange_rows(g, p, &p->field[FIELD_GID].now, p->field[FIELD_GID].bytes);
     exchange_rows(g, p, &p->reach, particles_preal(g->features));
-    ghosts_refresh(g, p); /* g->gather goes on with these */
+    ghosts_refresh(g, p);
+    bind_gather(g, g->pack, &p->field[FIELD_STATE].now, p->field[FIELD_STATE].bytes);
     exchange_bind(&g->exchange, p->field[FIELD_STATE].bytes, false);
     free(count_to);
     free(all);
@@ -173,7 +183,7 @@ void ghosts_plan(struct ghosts *g, const struct owners *owners, struct scan *sca
 
 void ghosts_begin(struct ghosts *g, struct timers *timers)
 {
-    if (g->comm->n_rank > 1) exchange_begin(&g->exchange, g->gather, timers);
+    if (g->comm->n_rank > 1) exchange_begin(&g->exchange, g->pack, timers);
 }
 
 const cl_event *ghosts_swap(

@@ -18,6 +18,7 @@ struct ghosts {
     struct exchange exchange;  /* of state records */
     struct buffer index, pick; /* [exchange.n_send] send order; scan scratch */
     struct launch *select, *compact, *gather;
+    struct launch *pack; /* gathers the states of a step */
 };
 
 struct ghosts *ghosts_create(struct device *dev, const struct comm *comm,

@@ -8,7 +8,12 @@
 #include "device/buffers.h"
 #include "owners_message.h"
 
-static const struct buffer_spec buffers[] = {{"cut tree", offsetof(struct owners, node)}, {"cuts", offsetof(struct owners, cut)}, {"domain", offsetof(struct owners, domain)}, {"owner", offsetof(struct owners, owner)}, {"stay", offsetof(struct owners, stay)}, {"leave", offsetof(struct owners, leave)}, {"leaving", offsetof(struct owners, index)}, {"old index", offsetof(struct owners, old_index)}, {"picked", offsetof(struct owners, picked)}, {0}};
+static const struct buffer_spec buffers[] = {{"cut tree", offsetof(struct owners, node)},
+    {"cuts", offsetof(struct owners, cut)}, {"domain", offsetof(struct owners, domain)},
+    {"owner", offsetof(struct owners, owner)}, {"stay", offsetof(struct owners, stay)},
+    {"leave", offsetof(struct owners, leave)}, {"leaving", offsetof(struct owners, index)},
+    {"old index", offsetof(struct owners, old_index)}, {"picked", offsetof(struct owners, picked)},
+    {0}};
 
 struct owners *owners_create(struct device *dev, const struct comm *comm,
     const struct features *features, const struct program *lists, const double period[3],
@@ -22,8 +27,8 @@ struct owners *owners_create(struct device *dev, const struct comm *comm,
     reals_write(&o->domain, features->position_is_float, 0, 6, domain);
     o->select = launch_create(lists, "select_owner");
     o->compact = launch_create(lists, "record_select");
-    o->number = launch_create(lists, "record_number");
     o->gather = launch_create(lists, "record_gather");
+    o->copy = launch_create(lists, "record_copy");
     launch_set_int(o->select, "rank", comm->rank);
     launch_set_int(o->select, "remove", features->remove_outside);
     launch_set_real_if(o->select, "period_x", period[0]);
@@ -36,7 +41,7 @@ void owners_free(struct owners *o)
 {
     if (!o) return;
     buffers_free(o, buffers);
-    struct launch *launch[] = {o->select, o->compact, o->number, o->gather};
+    struct launch *launch[] = {o->select, o->compact, o->gather, o->copy};
     for (int i = 0; i < 4; i++) launch_free(launch[i]);
     free(o->removed);
     free(o);
@@ -167,12 +172,10 @@ void owners_move(struct owners *o, struct cells *cells, struct scan *scan, struc
     particles_permute(p, &cells->member, n_keep);
     buffer_reserve(&o->old_index, (size_t)n_new * sizeof(cl_int));
     if (n_keep > 0) {
-        launch_bind_buffer(cells->copy, "from", &cells->member);
-        launch_bind_buffer(cells->copy, "to", &o->old_index);
-        launch_set_int(cells->copy, "n", (int)n_keep);
-        launch_run(cells->copy, n_keep);
-        launch_bind_buffer(cells->copy, "from", &cells->begin);
-        launch_bind_buffer(cells->copy, "to", &cells->cursor);
+        launch_bind_buffer(o->copy, "from", &cells->member);
+        launch_bind_buffer(o->copy, "to", &o->old_index);
+        launch_set_int(o->copy, "n", (int)n_keep);
+        launch_run(o->copy, n_keep);
     }
     particles_swap(p);
     for (int i = 0; i < FIELD_N; i++)

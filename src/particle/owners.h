@@ -30,7 +30,7 @@ struct owners {
      * wall_contacts_carry */
     struct buffer old_index;
     struct buffer picked; /* records of the elements that leave, packed for the host */
-    struct launch *select, *compact, *number, *gather;
+    struct launch *select, *compact, *gather, *copy;
     struct owners_removed *removed; /* [n_removed] in the last owners_move, on this rank */
     int64_t n_removed;
     int64_t n_moved; /* elements that this rank gave away in the last owners_move */
