@@ -21,7 +21,7 @@ static void set_feature(struct features *f, const char *name)
         {"periodic", &f->periodic[0]}, {"plane", &f->plane}, {"cylinder", &f->cylinder},
         {"linear", &f->pair.linear}, {"hertz", &f->pair.hertz}, {"tangential", &f->pair.tangential},
         {"damping", &f->pair.tangential_damping}, {"epsd", &f->pair.rolling_epsd},
-        {"cdt", &f->pair.rolling_cdt}, {"binding", &f->pair.binding}};
+        {"cdt", &f->pair.rolling_cdt}, {"binding", &f->pair.binding}, {"jkr", &f->pair.jkr}};
     for (size_t k = 0; k < sizeof table / sizeof *table; k++)
         if (!strcmp(table[k].name, name)) {
             *table[k].value = true;

@@ -30,6 +30,7 @@ CASES = [
     ("lattice", "mixed", ["turn", "volume", "rk4", "energy"]),
     ("lattice", "double", ["small", "rkn4", "energy"]),
     ("lattice", "single", ["turn", "rkn4", "energy"]),
+    ("pair_force", "double", ["spin", "hertz", "tangential", "damping", "jkr", "sizes"]),
 ]
 # One of each kernel and scheme, each precision.
 SOME = [CASES[1], CASES[5], CASES[8], CASES[14], CASES[15]]
