@@ -13,17 +13,44 @@
 #include "scene/scene_keys.h"
 #include "version.h"
 
-static void add_devices(struct report *r, const struct sim *s)
+struct device_texts {
+    char name[DEVICE_TEXT], driver[DEVICE_TEXT], platform[DEVICE_TEXT];
+};
+
+/* The devices of all ranks [n_rank], owned by the caller. Collective. */
+static struct device_texts *devices_of(const struct sim *s)
 {
-    struct {
-        char name[DEVICE_TEXT], driver[DEVICE_TEXT], platform[DEVICE_TEXT];
-    } mine, *all;
-    all = fail_alloc((size_t)s->comm->n_rank * sizeof *all);
+    struct device_texts mine, *all = fail_alloc((size_t)s->comm->n_rank * sizeof *all);
     memset(&mine, 0, sizeof mine);
     memcpy(mine.name, s->dev->name, DEVICE_TEXT);
     memcpy(mine.driver, s->dev->driver, DEVICE_TEXT);
     memcpy(mine.platform, s->dev->platform_version, DEVICE_TEXT);
     comm_gather(s->comm, &mine, all, sizeof mine);
+    return all;
+}
+
+void record_print_devices(const struct sim *s)
+{
+    int n = s->comm->n_rank;
+    struct device_texts *all = devices_of(s);
+    for (int k = 0; k < n; k++) {
+        int n_before = 0, n_same = 0;
+        for (int j = 0; j < n; j++) {
+            bool same =
+                !strcmp(all[j].name, all[k].name) && !strcmp(all[j].platform, all[k].platform);
+            n_before += same && j < k;
+            n_same += same;
+        }
+        if (n_before > 0) continue;
+        log_print(s->log, "%d rank%s on %s (%s)", n_same, n_same > 1 ? "s" : "", all[k].name,
+            all[k].platform);
+    }
+    free(all);
+}
+
+static void add_devices(struct report *r, const struct sim *s)
+{
+    struct device_texts *all = devices_of(s);
     report_begin_list(r, "devices");
     for (int k = 0; k < s->comm->n_rank; k++) {
         report_begin(r, NULL);

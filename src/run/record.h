@@ -14,4 +14,7 @@
 void record_features(struct report *report, const struct feature_row *row, const void *features);
 bool record_write(struct sim *s, int exit_code, bool observed);
 
+/* Logs each distinct device with the number of ranks that use it. Collective. */
+void record_print_devices(const struct sim *s);
+
 #endif

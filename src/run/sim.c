@@ -6,6 +6,7 @@
 
 #include "comm/fail.h"
 #include "output.h"
+#include "record.h"
 #include "resume.h"
 #include "base/signals.h"
 #include "base/wake.h"
@@ -44,13 +45,13 @@ static void count_steps(struct sim *s)
 {
     if (!(s->scene->time.end / s->dt <= SCENE_STEPS_MOST))
         fail_stop_together(EXIT_SCENE,
-            "%s: time.step: auto takes %.3g s, too many steps until time.end; give a value",
+            "%s: time.step: auto is %.3g s, too many steps until time.end; give a value",
             s->scene->path, s->dt);
     s->n_step = (int64_t)ceil(s->scene->time.end / s->dt * (1 - 1e-12));
     if (s->options->n_step >= 0 && s->options->n_step < s->n_step) s->n_step = s->options->n_step;
     if (s->from && s->from->step > s->n_step)
         fail_stop_together(s->n_step == s->options->n_step ? EXIT_USAGE : EXIT_SCENE,
-            "'%s' is of step %lld, the run is to end with step %lld", s->from->path,
+            "'%s' is of step %lld, after step %lld, with which the run shall end", s->from->path,
             (long long)s->from->step, (long long)s->n_step);
 }
 
@@ -63,9 +64,20 @@ static void begin(struct sim *s)
     }
     resume_close(s->from);
     s->begun_at = s->step;
-    log_print(s->log, "goes on from step %lld, t = %.9g s, of '%s'", (long long)s->step,
+    log_print(s->log, "resumes from step %lld, t = %.9g s, of '%s'", (long long)s->step,
         (double)s->step * s->dt, s->from->path);
-    if (s->step == s->n_step || s->rest.reached) log_print(s->log, "nothing is left to do");
+    if (s->step == s->n_step || s->rest.reached) log_print(s->log, "the run is already complete");
+}
+
+/* Without a contact nothing limits the step of particles yet. */
+static void print_step(const struct sim *s)
+{
+    if (isfinite(s->dt_limit))
+        log_print(s->log, "time step %.4g s (%.2g of the critical time step, %.4g s), %lld steps",
+            s->dt, s->dt / s->dt_limit, s->dt_limit, (long long)s->n_step);
+    else
+        log_print(s->log, "time step %.4g s (no contact limits it yet), %lld steps", s->dt,
+            (long long)s->n_step);
 }
 
 struct sim *sim_create(struct scene *scene, struct comm *comm, struct log *log,
@@ -94,13 +106,10 @@ struct sim *sim_create(struct scene *scene, struct comm *comm, struct log *log,
     s->output = output_create(s);
     s->dev->dump_dir = options->dir;
     log_print(log, "%s", scene->title ? scene->title : scene->name);
-    log_print(log, "%d rank%s on %s (%s)", comm->n_rank, comm->n_rank > 1 ? "s" : "", s->dev->name,
-        s->dev->platform_version);
+    record_print_devices(s);
     s->ops->setup(s);
     begin(s);
-    log_print(log,
-        "time step %.4g s (%.2g of the limit %.4g s of the present contacts), %lld steps", s->dt,
-        s->dt / s->dt_limit, s->dt_limit, (long long)s->n_step);
+    print_step(s);
     if (s->ops->warn) s->ops->warn(s);
     print_memory(s);
     if (options->trace)
@@ -129,8 +138,7 @@ static bool act_on_votes(struct sim *s)
     timer_end(&s->timers, TIMER_WAIT);
     timer_end(&s->timers, TIMER_EXCHANGE);
     trace_lap(s->dev->trace, "vote");
-    if (agreed & WATCH_LOST)
-        output_stop_numerics(s, "positions or velocities are not numbers any more");
+    if (agreed & WATCH_LOST) output_stop_numerics(s, "positions or velocities are not numbers");
     if (s->ops->regroup && (agreed & WATCH_STALE || s->ops->stale(s))) {
         timer_begin(&s->timers, TIMER_REGROUP);
         s->ops->regroup(s);
@@ -158,14 +166,15 @@ static int close_run(struct sim *s, bool stopped)
     int code = stopped ? EXIT_STOPPED : restless ? EXIT_NUMERICS : EXIT_DONE;
     if (stopped)
         log_print(s->log,
-            "stopped on request at step %lld; a frame was written, `democles resume %s` goes on",
+            "stopped on request at step %lld; a frame was written, `democles resume %s` continues",
             (long long)s->step, s->options->dir);
-    if (s->rest.reached) log_print(s->log, "at rest after step %lld", (long long)s->step);
+    if (s->rest.reached)
+        log_print(s->log, "static equilibrium after step %lld", (long long)s->step);
     output_close(s, code);
     if (restless)
         fail_stop_together(EXIT_NUMERICS,
-            "not at rest by time.end, %g s: %.3g of the largest force was left at the last look, "
-            "relax.tolerance is %g",
+            "no static equilibrium by time.end, %g s: the residual force was %.3g at the last "
+            "convergence check, relax.tolerance is %g",
             s->scene->time.end, s->rest.left, s->scene->lattice.tolerance);
     return code;
 }

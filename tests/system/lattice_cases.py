@@ -45,7 +45,7 @@ class Cases(parallel_runs.Case):
         for args in (("time.end=0.1ms",), ("time.end=0.3ms", "boundaries[0]={where: all, velocity: [free, free, 1]}")):
             run = self.run_scene(self.path("patch"), 2, *(word for arg in args for word in ("--set", arg)))
             self.assertEqual(run.code, 5, run.err)
-            self.assertEqual(run.err.count("not at rest by time.end"), 1, run.err)
+            self.assertEqual(run.err.count("no static equilibrium by time.end"), 1, run.err)
             record = run.record()
             self.assertEqual((record["exit"], record["rest"]["reached"], len(run.frames())), (5, False, 2))
         stopped = self.good_run(self.path("patch"), 1, "--steps", "50").record()

@@ -161,8 +161,11 @@ class Partition(parallel_runs.Case):
         digests = {self.good_run(scene, 1, *steps, *which).record()["digest"] for which in device}
         record = self.unlike_run(scene, [[], []], device, *steps, *keys(weights="measured", every=37, threshold=0))
         self.assertEqual(digests, {record["digest"]})
+        with open(os.path.join(self.dir, "unlike", "log.txt")) as file:
+            log = file.read()
         for part, kind in zip(record["devices"], name):
             self.assertIn(kind, part["name"])
+            self.assertRegex(log, rf"(?m)^1 rank on {kind}")
         ranks = record["partition"]["ranks"]
         self.assertLess(ranks[1]["work"], ranks[0]["work"])
 

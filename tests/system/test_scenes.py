@@ -217,6 +217,7 @@ class Ran(Scenes):
         run = self.call("run", "scene.yaml", "-o", "out", *(word for key in change for word in ("--set", key)))
         self.assertEqual((run.code, run.err), (0, []))
         self.assertEqual(run.out.splitlines()[-1], "no element is left, so there is no state to digest")
+        self.assertIn("\ntime step 1e-06 s (no contact limits it yet), 1000 steps\n", run.out)
         with open(os.path.join(self.dir, "out", "run.json")) as file:
             record = json.load(file)
         self.assertEqual((record["elements_removed"], record["digest"]), (2, 16 * "0"))
