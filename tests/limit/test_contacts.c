@@ -11,7 +11,6 @@
 #include "comm/fail.h"
 #include "kernels/contact/law_limit.h"
 #include "particle/particle.h"
-#include "particle/particle.h"
 
 enum { N = 200 };
 
@@ -103,8 +102,7 @@ static struct contact_material material_of(const struct scene *scene, int a, int
 {
     double row[MATERIAL_WIDTH];
     limit_material(scene, a, b, row);
-    return (struct contact_material){
-        row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8], (int)row[9]};
+    return material_load(row);
 }
 
 /* One contact, if it acts; D: from the centre to the partner, distance along it less than which
