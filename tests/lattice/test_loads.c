@@ -252,8 +252,8 @@ static void messages(void **state)
             ", pressure: 1}\n"),
         "scene.yaml:9:4: boundaries[2].pressure: every cell that it acts on is fixed");
     cut_expect_one(f, BAD(" - {where: {" BOX(0, 0, 0, 9, 9, 9) "}, velocity: [1, 1, free]}\n"),
-        "scene.yaml:8:4: boundaries[1].where: the motion in x of some of these cells is "
-        "prescribed by a boundary before this one");
+        "scene.yaml:8:4: boundaries[1].where: an earlier boundary already prescribes the "
+        "motion in x of some of these cells");
     const char *const two[] = {
         "scene.yaml:8:4: boundaries[1].where: no cell has its centre in this region",
         "scene.yaml:9:4: boundaries[2].force: every cell that it acts on is fixed in x"};

@@ -62,7 +62,7 @@ class Chain(cli.Case):
         done = self.chain(1.05 * TRUE, 30, False)
         self.assertEqual(done.code, 5, done.err)
         text = "\n".join(done.err)
-        found = re.search(r"time step ([\d.e-]+) s is over its limit ([\d.e-]+) s, set by the contacts of element (\d+)", text)
+        found = re.search(r"time step ([\d.e-]+) s exceeds the critical time step ([\d.e-]+) s, set by the contacts of element (\d+)", text)
         self.assertTrue(found, text)
         self.assertAlmostEqual(float(found[1]) / TRUE, 1.05, 3)
         self.assertAlmostEqual(float(found[2]) / TRUE, math.sin((N - 1) * math.pi / (2 * N)), 3)

@@ -58,7 +58,7 @@ static inline void fixture_fill(struct fixture *f, const struct comm *comm)
     f->element[1] = f->point[0];
     f->element[2] = f->point[1];
     f->element[3] = (struct column){
-        "displacement", "m", "since the lists were built, in µm", COLUMN_F64, 3, f->velocity};
+        "displacement", "m", "since the lists were built, in µm steps", COLUMN_F64, 3, f->velocity};
     f->pair[0] =
         (struct column){"partner", "1", "global id of the second element", COLUMN_I64, 1, f->gid};
     f->state[0] = (struct table){"elements", n, f->element, 4};

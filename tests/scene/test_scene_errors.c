@@ -228,7 +228,7 @@ static void names_and_domain(void **state)
         "scene.yaml:5:28: measure[0].every: 0 is out of range: must be > 0");
     fixture_expect_one(f, SCENE(ONE "measure: [{name: a, every: 1}]\n"),
         "scene.yaml:5:11: measure[0]: missing key: one of 'count', 'energy', 'momentum', "
-        "'wall_force', 'probe'");
+        "'wall_force', 'wall_torque', 'probe'");
 }
 
 static void too_many_steps(void **state)
