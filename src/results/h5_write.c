@@ -39,7 +39,7 @@ static void insist(const struct h5_writer *writer, bool ok, const char *call, co
     double free_bytes = statvfs(writer->tmp, &disk) == 0
                             ? (double)disk.f_bavail * (double)disk.f_frsize
                             : (double)NAN;
-    usleep(200000U * (unsigned)(writer->comm->rank < 10 ? writer->comm->rank : 10));
+    usleep(500000U * (unsigned)(writer->comm->rank < 10 ? writer->comm->rank : 10));
     unlink(writer->tmp);
     fail_stop(EXIT_IO, "cannot write '%s': %s%s: %s%s (%.1f MB are free there)", writer->path, call,
         name, reason, system, 1e-6 * free_bytes);

@@ -233,7 +233,7 @@ class Wrong(Case):
         for key in ("time.step=1e-6", "gravity=[0, 0, 1]", "method=lattice", "elements[0].velocity=[0, 0, 0]", "precision=single", "time={end: 1}"):
             self.refused("cannot change", "--set", key)
         self.refused("unknown key", "--set", "output.evry=1")
-        self.refused("step 50, the run is to end with step 49", "--steps", "49", code=2)
+        self.refused("step 50, after step 49, with which the run shall end", "--steps", "49", code=2)
         self.refused("step 50", "--set", "time.end=2e-4")
         self.refused("energy.csv' has other columns", "--set", "measure[0]={name: energy, every: 1e-4, momentum: all}")
         self.refused("orientation cannot be added to a restarted run", "--set", "output.fields=[orientation]")
@@ -242,7 +242,7 @@ class Wrong(Case):
         """More measures, other frames, another end, where files are; the bits stay."""
         run = self.resume(self.whole_run.dir, 3, "--steps", "70", "--set", "output={every: 0.1, fields: [id]}", "--set", "partition.every=7", "--set",
                           "measure=[{name: energy, every: 2e-3, energy: all}, {name: probe, every: 2e-4, probe: {element: 3}}]")
-        self.assertIn("probe.csv' holds nothing", run.err)
+        self.assertIn("probe.csv' is empty", run.err)
         self.assertEqual(len(run.series()["probe.csv"].splitlines()), 3)
         self.assertEqual(frames.scene(run.dir)["partition"]["every"], 7)
         whole = self.good_run(self.put(robust_jobs.bed(frame_every=20)), 1, "--steps", "70", name="longer")

@@ -2,6 +2,7 @@
 """Runs that cannot be: each has one message, its exit code, leaves nothing half-done, and no rank waits for ever. Own argument: results_tool."""
 import os
 import resource
+import shutil
 import subprocess
 
 import parallel_runs
