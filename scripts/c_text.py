@@ -7,7 +7,9 @@ FOLDERS = ("src", "comm", "partition", "kernels", "tests")
 
 
 def files(*suffixes):
-    return sorted(p for folder in FOLDERS for p in (ROOT / folder).rglob("*") if p.suffix in suffixes)
+    return sorted(
+        p for folder in FOLDERS for p in (ROOT / folder).rglob("*") if p.suffix in suffixes
+    )
 
 
 def name(path):
@@ -21,10 +23,14 @@ def blank(match):
 
 def code(text, keep_strings=False):
     """Text without comments, and without what stands in quotes unless keep_strings."""
+
     def replace(match):
         quoted = match.group()[0] in "\"'"
         return match.group() if quoted and keep_strings else blank(match)
-    return re.sub(r'/\*.*?\*/|//[^\n]*|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'', replace, text, flags=re.S)
+
+    return re.sub(
+        r'/\*.*?\*/|//[^\n]*|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'', replace, text, flags=re.S
+    )
 
 
 def without_preprocessor(text):
@@ -49,7 +55,9 @@ def without_preprocessor(text):
 def includes(path):
     """(line, 'quote' or 'angle', what) of each #include."""
     text = code(path.read_text(), keep_strings=True)
-    for match in re.finditer(r'^[ \t]*#[ \t]*include[ \t]*(?:"([^"\n]+)"|<([^>\n]+)>)', text, flags=re.M):
+    for match in re.finditer(
+        r'^[ \t]*#[ \t]*include[ \t]*(?:"([^"\n]+)"|<([^>\n]+)>)', text, flags=re.M
+    ):
         line = text.count("\n", 0, match.start()) + 1
         yield line, "quote" if match.group(1) else "angle", match.group(1) or match.group(2)
 

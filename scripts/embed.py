@@ -14,5 +14,9 @@ entries = []
 for path in sorted(map(pathlib.Path, sys.argv[2:]), key=lambda p: p.name):
     lines = "\n".join(map(literal, path.read_text(encoding="ascii").splitlines()))
     entries.append(f'    {{"{path.name}", "{path.parent.name}",\n{lines}}},\n')
-text = '#include "device/kernel_source.h"\n\nconst struct kernel_source kernel_source_table[] = {\n' + "".join(entries) + "    {0, 0, 0},\n};\n"
+text = (
+    '#include "device/kernel_source.h"\n\nconst struct kernel_source kernel_source_table[] = {\n'
+    + "".join(entries)
+    + "    {0, 0, 0},\n};\n"
+)
 pathlib.Path(sys.argv[1]).write_text(text, encoding="ascii")

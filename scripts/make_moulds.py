@@ -17,8 +17,20 @@ import sys
 
 import numpy as np
 
-FUNNEL = {"top": 270.0, "depth": 30.0, "outlet": 30.0, "neck": 60.0, "taper": 240.0, "collar": 110.0}  # mm
-L_BOX = {"scale": 0.45, "leg": (100.0, 200.0, 600.0), "trough": (700.0, 150.0), "walls": 390.0}  # mm before scaling, walls after
+FUNNEL = {
+    "top": 270.0,
+    "depth": 30.0,
+    "outlet": 30.0,
+    "neck": 60.0,
+    "taper": 240.0,
+    "collar": 110.0,
+}  # mm
+L_BOX = {
+    "scale": 0.45,
+    "leg": (100.0, 200.0, 600.0),
+    "trough": (700.0, 150.0),
+    "walls": 390.0,
+}  # mm before scaling, walls after
 HAIR = 1e-3  # mm that the filling keeps from the walls: they are not to touch it by rounding
 
 
@@ -64,13 +76,22 @@ def v_funnel(folder):
     f = FUNNEL
     z = [0.0, f["neck"], f["neck"] + f["taper"], f["neck"] + f["taper"] + f["collar"]]
     half = [f["outlet"] / 2, f["outlet"] / 2, f["top"] / 2, f["top"] / 2]
-    write_stl(folder / "funnel.stl", "funnel", funnel([(h, x, f["depth"] / 2) for h, x in zip(z, half)], closed=False))
+    write_stl(
+        folder / "funnel.stl",
+        "funnel",
+        funnel([(h, x, f["depth"] / 2) for h, x in zip(z, half)], closed=False),
+    )
     # The slope is 1 : 2, so a horizontal hair in x is enough for a distance of 0.9 hairs.
-    inner = [(h, x - HAIR, f["depth"] / 2 - HAIR) for h, x in zip([z[0] + HAIR, *z[1:3], z[3] - HAIR], half)]
+    inner = [
+        (h, x - HAIR, f["depth"] / 2 - HAIR)
+        for h, x in zip([z[0] + HAIR, *z[1:3], z[3] - HAIR], half)
+    ]
     triangles = funnel(inner, closed=True)
     write_stl(folder / "filling.stl", "filling", triangles)
-    print(f"  funnel up to z = {z[2]:g} mm: {volume(funnel([(h, x, f['depth'] / 2) for h, x in zip(z[:3], half)], closed=True)) / 1e6:.4f} L, "
-          f"filling: {volume(triangles) / 1e6:.4f} L")
+    print(
+        f"  funnel up to z = {z[2]:g} mm: {volume(funnel([(h, x, f['depth'] / 2) for h, x in zip(z[:3], half)], closed=True)) / 1e6:.4f} L, "
+        f"filling: {volume(triangles) / 1e6:.4f} L"
+    )
 
 
 def l_box(folder):
@@ -87,15 +108,26 @@ def l_box(folder):
         for a, b, low, high in sides:
             face = [(a, y, low), (b, y, low), (b, y, high), (a, y, high)]
             triangles += quad(*(face[::-1] if turned else face))
-    for x, low, high, turned in ((x0, z0, z1, True), (x0, z1, z2, True), (x1, z1, z2, False), (x2, z0, z1, False)):  # back, front, end of the trough
+    for x, low, high, turned in (
+        (x0, z0, z1, True),
+        (x0, z1, z2, True),
+        (x1, z1, z2, False),
+        (x2, z0, z1, False),
+    ):  # back, front, end of the trough
         face = [(x, y0, low), (x, y1, low), (x, y1, high), (x, y0, high)]
         triangles += quad(*(face[::-1] if turned else face))
     write_stl(folder / "l_box.stl", "l_box", triangles)
-    print(f"  leg {x1:g} x {y1:g} x {s * L_BOX['leg'][2]:g} mm: {x1 * y1 * s * L_BOX['leg'][2] / 1e6:.4f} L, trough {x2 - x1:g} x {y1:g} x {z1:g} mm")
+    print(
+        f"  leg {x1:g} x {y1:g} x {s * L_BOX['leg'][2]:g} mm: {x1 * y1 * s * L_BOX['leg'][2] / 1e6:.4f} L, trough {x2 - x1:g} x {y1:g} x {z1:g} mm"
+    )
 
 
 if __name__ == "__main__":
-    cases = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parent.parent / "cases"
+    cases = (
+        pathlib.Path(sys.argv[1])
+        if len(sys.argv) > 1
+        else pathlib.Path(__file__).resolve().parent.parent / "cases"
+    )
     for case, make in (("v_funnel", v_funnel), ("l_box", l_box)):
         (cases / case).mkdir(parents=True, exist_ok=True)
         make(cases / case)

@@ -28,7 +28,7 @@ class Description:
         self.keys = []
         for row in rows:
             fixed = [row[a:b].strip() for a, b in zip(at, at[1:])]
-            self.keys.append((*fixed, *re.split(r" {2,}", row[at[3]:].strip(), maxsplit=1)))
+            self.keys.append((*fixed, *re.split(r" {2,}", row[at[3] :].strip(), maxsplit=1)))
 
     def words(self, key):
         """That a key can be."""
@@ -38,37 +38,75 @@ class Description:
 
 def roff(text):
     """Text that no character of turns into a request."""
-    escaped = text.replace("\\", "\\e").replace("-", "\\-").replace("'", "\\(aq").replace("`", "\\(ga")
-    return "\n".join("\\&" + line if line.startswith(".") else line for line in escaped.splitlines())
+    escaped = (
+        text.replace("\\", "\\e").replace("-", "\\-").replace("'", "\\(aq").replace("`", "\\(ga")
+    )
+    return "\n".join(
+        "\\&" + line if line.startswith(".") else line for line in escaped.splitlines()
+    )
 
 
 def page(name, section, title, parts):
-    lines = [f'.TH {name.upper()} {section} "" democles "democles"', ".SH NAME", f"{name} \\- {roff(title)}"]
+    lines = [
+        f'.TH {name.upper()} {section} "" democles "democles"',
+        ".SH NAME",
+        f"{name} \\- {roff(title)}",
+    ]
     return "\n".join([*lines, *parts]) + "\n"
 
 
 def program_page(d):
     version, title = d.title.split(": ", 1)
-    parts = [".SH SYNOPSIS", *(line for usage, _, _ in d.commands.values() for line in (f".B {roff(usage)}", ".br")),
-             ".SH DESCRIPTION", f"This is {roff(version)}. Particles and solids as lattices, described by a scene in YAML; see",
-             ".BR democles-scene (5)", "for its keys, and", ".BR democles-tools (1)", "for pictures and plots of the results.", ".SH COMMANDS"]
+    parts = [
+        ".SH SYNOPSIS",
+        *(line for usage, _, _ in d.commands.values() for line in (f".B {roff(usage)}", ".br")),
+        ".SH DESCRIPTION",
+        f"This is {roff(version)}. Particles and solids as lattices, described by a scene in YAML; see",
+        ".BR democles-scene (5)",
+        "for its keys, and",
+        ".BR democles-tools (1)",
+        "for pictures and plots of the results.",
+        ".SH COMMANDS",
+    ]
     for usage, text, options in d.commands.values():
         parts += [f".SS {roff(usage)}", roff(text)]
         for name, value, meaning in options:
-            parts += [".TP", f".BI \"{roff(name)} \" {roff(value)}" if value else f".B {roff(name)}", roff(meaning)]
+            parts += [
+                ".TP",
+                f'.BI "{roff(name)} " {roff(value)}' if value else f".B {roff(name)}",
+                roff(meaning),
+            ]
     parts.append(".SH EXIT STATUS")
     for code, meaning in d.codes:
         parts += [".TP", f".B {code}", roff(meaning)]
-    return page("democles", 1, title, [*parts, ".SH SEE ALSO", ".BR democles-scene (5),", ".BR democles-tools (1)"])
+    return page(
+        "democles",
+        1,
+        title,
+        [*parts, ".SH SEE ALSO", ".BR democles-scene (5),", ".BR democles-tools (1)"],
+    )
 
 
 def scene_page(d):
-    parts = [".SH DESCRIPTION", "A scene is a YAML file with these keys. A list is marked by [], a name of your choice by NAME.", ".SH KEYS"]
+    parts = [
+        ".SH DESCRIPTION",
+        "A scene is a YAML file with these keys. A list is marked by [], a name of your choice by NAME.",
+        ".SH KEYS",
+    ]
     for key, kind, unit, default, meaning in d.keys:
         about = kind + (f" [{unit}]" if unit else "") + (f", {default}" if default != "-" else "")
         parts += [".TP", f".B {roff(key)}", f".I {roff(about)}", ".br", roff(meaning)]
-    notes = [part for line in d.notes.splitlines() for part in ([".EX", roff(line), ".EE"] if line.startswith(" ") else [roff(line)])]
-    return page("democles-scene", 5, "the scene language of democles", [*parts, ".SH NOTES", *notes, ".SH SEE ALSO", ".BR democles (1)"])
+    notes = [
+        part
+        for line in d.notes.splitlines()
+        for part in ([".EX", roff(line), ".EE"] if line.startswith(" ") else [roff(line)])
+    ]
+    return page(
+        "democles-scene",
+        5,
+        "the scene language of democles",
+        [*parts, ".SH NOTES", *notes, ".SH SEE ALSO", ".BR democles (1)"],
+    )
 
 
 def tools_page(_):
@@ -77,17 +115,42 @@ def tools_page(_):
         tree = ast.parse(path.read_text())
         if any(isinstance(node, ast.FunctionDef) and node.name == "main" for node in tree.body):
             name = "democles-" + path.stem.replace("_", "-")
-            text = re.sub(r"\b(?:scripts/)?(\w+)\.py\b", lambda m: "democles-" + m[1].replace("_", "-"), ast.get_docstring(tree))
+            text = re.sub(
+                r"\b(?:scripts/)?(\w+)\.py\b",
+                lambda m: "democles-" + m[1].replace("_", "-"),
+                ast.get_docstring(tree),
+            )
             parts += [f".SS {roff(name)}"]
             for paragraph in text.split("\n\n"):
-                parts += [".PP", *([".EX", roff(paragraph), ".EE"] if paragraph.startswith(" ") else [roff(paragraph)])]
-    return page("democles-tools", 1, "pictures, plots and studies of what democles computes", [*parts, ".SH SEE ALSO", ".BR democles (1)"])
+                parts += [
+                    ".PP",
+                    *(
+                        [".EX", roff(paragraph), ".EE"]
+                        if paragraph.startswith(" ")
+                        else [roff(paragraph)]
+                    ),
+                ]
+    return page(
+        "democles-tools",
+        1,
+        "pictures, plots and studies of what democles computes",
+        [*parts, ".SH SEE ALSO", ".BR democles (1)"],
+    )
 
 
 def completion(d):
     plain = [re.sub(r"\[\]", "", row[0]) for row in d.keys]
-    settable = [row[0] + "=" for row in d.keys if "[]" not in row[0] and "NAME" not in row[0] and not row[1].startswith(("mapping", "list of map"))]
-    switch = "\n".join(f'        {name}) options="{" ".join(o for o, _, _ in options)}" ;;' for name, (_, _, options) in d.commands.items())
+    settable = [
+        row[0] + "="
+        for row in d.keys
+        if "[]" not in row[0]
+        and "NAME" not in row[0]
+        and not row[1].startswith(("mapping", "list of map"))
+    ]
+    switch = "\n".join(
+        f'        {name}) options="{" ".join(o for o, _, _ in options)}" ;;'
+        for name, (_, _, options) in d.commands.items()
+    )
     return f"""# Completion of bash for democles.
 _democles()
 {{
@@ -123,6 +186,11 @@ complete -F _democles democles
 """
 
 
-MAKERS = {"program": program_page, "scene": scene_page, "tools": tools_page, "completion": completion}
+MAKERS = {
+    "program": program_page,
+    "scene": scene_page,
+    "tools": tools_page,
+    "completion": completion,
+}
 if __name__ == "__main__":
     print(MAKERS[sys.argv[1]](Description(pathlib.Path(sys.argv[2]).read_text())), end="")

@@ -20,7 +20,9 @@ FORWARDED = (signal.SIGINT, signal.SIGTERM, signal.SIGUSR1, signal.SIGUSR2)
 
 def attempt(kept):
     """Return code of mpirun, and whether it counts. kept: (stream of ours, file in its place or None for the stream itself)."""
-    child = subprocess.Popen(mpi.command(*sys.argv[1:]), env=mpi.environment(), stdout=kept[0][1], stderr=kept[1][1])
+    child = subprocess.Popen(
+        mpi.command(*sys.argv[1:]), env=mpi.environment(), stdout=kept[0][1], stderr=kept[1][1]
+    )
     for number in FORWARDED:
         signal.signal(number, lambda got, _frame: child.send_signal(got))
     code, err = child.wait(), kept[1][1]
@@ -31,7 +33,10 @@ def attempt(kept):
 
 def main():
     for left in reversed(range(TRIES)):
-        kept = [(stream, None if stream.isatty() else tempfile.TemporaryFile()) for stream in (sys.stdout, sys.stderr)]
+        kept = [
+            (stream, None if stream.isatty() else tempfile.TemporaryFile())
+            for stream in (sys.stdout, sys.stderr)
+        ]
         code, counts = attempt(kept)
         if counts or left == 0:
             break

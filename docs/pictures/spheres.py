@@ -2,8 +2,18 @@
 import glob
 import sys
 
-from paraview.simple import (ColorBy, GetActiveViewOrCreate, GetColorTransferFunction, GetScalarBar, Glyph, Hide,
-                             OpenDataFile, Render, SaveScreenshot, Show)
+from paraview.simple import (
+    ColorBy,
+    GetActiveViewOrCreate,
+    GetColorTransferFunction,
+    GetScalarBar,
+    Glyph,
+    Hide,
+    OpenDataFile,
+    Render,
+    SaveScreenshot,
+    Show,
+)
 
 folder, picture = sys.argv[1:3]
 frame = OpenDataFile(sorted(glob.glob(folder + "/frame_*.hdf"))[-1])

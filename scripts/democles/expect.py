@@ -17,7 +17,9 @@ def series(folder, name):
         sys.exit(f"there is no {path}")
     with open(path, newline="") as file:
         rows = list(csv.reader(file))
-    values = numpy.array([[float(v) for v in row] for row in rows[1:]]).reshape(len(rows) - 1, len(rows[0]))
+    values = numpy.array([[float(v) for v in row] for row in rows[1:]]).reshape(
+        len(rows) - 1, len(rows[0])
+    )
     return {title.split(" [")[0]: values[:, k] for k, title in enumerate(rows[0])}
 
 
@@ -59,10 +61,15 @@ class Verdict:
     def near(self, name, value, right, relative=0.0, absolute=0.0):
         """|value - right| <= relative |right| + absolute."""
         bound = relative * abs(right) + absolute
-        self.say(abs(value - right) <= bound, f"{name}: {value:.9g}, expected {right:.9g} +- {bound:.3g} (off by {value - right:.3g})")
+        self.say(
+            abs(value - right) <= bound,
+            f"{name}: {value:.9g}, expected {right:.9g} +- {bound:.3g} (off by {value - right:.3g})",
+        )
 
     def between(self, name, value, low, high):
-        self.say(low <= value <= high, f"{name}: {value:.9g}, expected between {low:.9g} and {high:.9g}")
+        self.say(
+            low <= value <= high, f"{name}: {value:.9g}, expected between {low:.9g} and {high:.9g}"
+        )
 
     def end(self):
         if self.n_wrong:

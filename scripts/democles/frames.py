@@ -26,7 +26,8 @@ HEXAHEDRON = 12  # VTK's number
 
 class Frame:
     """One frame. `points` [n][3] [m]: centres of the elements, or of the cells of a solid; `time` [s], `names` of the fields. Of a solid also
-    `corners` and `displacement` of the corners [n][8][3] [m], the former at the start; else `corners` is None."""
+    `corners` and `displacement` of the corners [n][8][3] [m], the former at the start; else `corners` is None.
+    """
 
     def __init__(self, path):
         self.path = str(path)
@@ -37,9 +38,14 @@ class Frame:
                 self._field, types = _arrays(shown["PointData"]), shown["Types"][:1]
                 self.corners = None
                 if types == [HEXAHEDRON]:
-                    self.corners, self.displacement = self.points.reshape(-1, 8, 3), self._field["displacement"].reshape(-1, 8, 3)
+                    self.corners, self.displacement = self.points.reshape(-1, 8, 3), self._field[
+                        "displacement"
+                    ].reshape(-1, 8, 3)
                     self.points = (self.corners + self.displacement).mean(axis=1)
-                    self._field = {"displacement": self.displacement.mean(axis=1), **_arrays(shown["CellData"])}
+                    self._field = {
+                        "displacement": self.displacement.mean(axis=1),
+                        **_arrays(shown["CellData"]),
+                    }
         except (OSError, KeyError) as error:
             raise SystemExit(f"{self.path}: not a frame: {error}") from error
         self.names = list(self._field)
@@ -55,9 +61,17 @@ class Frame:
 
     def unit(self, name):
         """m/s, or nothing for a pure number."""
-        shown = "VTKHDF/PointData/" if self.corners is None or name == "displacement" else "VTKHDF/CellData/"
+        shown = (
+            "VTKHDF/PointData/"
+            if self.corners is None or name == "displacement"
+            else "VTKHDF/CellData/"
+        )
         with h5py.File(self.path, "r") as file:
-            unit = file[(shown if name in self._field else f"democles/{self._table()}/") + name].attrs.get("unit", b"").decode()
+            unit = (
+                file[(shown if name in self._field else f"democles/{self._table()}/") + name]
+                .attrs.get("unit", b"")
+                .decode()
+            )
         return "" if unit == "1" else unit
 
     def step(self):

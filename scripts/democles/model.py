@@ -42,6 +42,7 @@ class Machine:
 @dataclasses.dataclass
 class Rates:
     """Of one step on the measured device."""
+
     kernel_s: float  # per element
     regroup_s: float  # per element
     launches: float  # per rank
@@ -51,6 +52,7 @@ class Rates:
 @dataclasses.dataclass
 class Traffic:
     """Of one rank and step, means over ranks; imbalance of the run."""
+
     messages: float
     bytes: float
     boundary: float  # elements that are sent, each time
@@ -66,9 +68,16 @@ def rates_of(record):
     plain = record.raw["plain_steps"]
     launches = plain["launches"] / max(plain["steps"], 1) / record.ranks
     kernels = record.of("kernels")  # of rank 0
-    of_steps = [k["seconds"] for k in kernels.values() if k["launches"] >= record.steps] if kernels else []
+    of_steps = (
+        [k["seconds"] for k in kernels.values() if k["launches"] >= record.steps] if kernels else []
+    )
     kernel = min(sum(of_steps) / record.steps, compute) if kernels else compute
-    return Rates(kernel / mine, record.per_step("regroup") / mine, launches, (compute - kernel) / launches if launches > 0 else 0)
+    return Rates(
+        kernel / mine,
+        record.per_step("regroup") / mine,
+        launches,
+        (compute - kernel) / launches if launches > 0 else 0,
+    )
 
 
 def faces(ranks):
@@ -84,8 +93,15 @@ def neighbours(ranks):
 def measured_traffic(record):
     sent, plain = record.raw["exchange"], record.raw["plain_steps"]
     n = sent["neighbours"]["mean"]
-    return Traffic(sent["messages"]["mean"], sent["bytes"]["mean"], sent["elements"]["mean"], record.imbalance(),
-                   sent["messages"]["mean"] / n if n else 1, plain["launches"] / max(plain["steps"], 1) / record.ranks, "measured")
+    return Traffic(
+        sent["messages"]["mean"],
+        sent["bytes"]["mean"],
+        sent["elements"]["mean"],
+        record.imbalance(),
+        sent["messages"]["mean"] / n if n else 1,
+        plain["launches"] / max(plain["steps"], 1) / record.ranks,
+        "measured",
+    )
 
 
 def traffic_at(ranks, per_rank, records, rates):
@@ -97,12 +113,21 @@ def traffic_at(ranks, per_rank, records, rates):
         if r.ranks == ranks and abs(r.elements / r.ranks / per_rank - 1) < 0.01:
             return measured_traffic(r)
     if not many:
-        raise SystemExit("model: more than one rank can be predicted only from a run on more than one, which tells what is sent")
+        raise SystemExit(
+            "model: more than one rank can be predicted only from a run on more than one, which tells what is sent"
+        )
     near = min(many, key=lambda r: abs(math.log(r.ranks / ranks)))
     known = measured_traffic(near)
     grown = (per_rank / (near.elements / near.ranks)) ** (2 / 3) * faces(ranks) / faces(near.ranks)
-    return Traffic(known.exchanges * neighbours(ranks), known.bytes * grown, known.boundary * grown, known.imbalance, known.exchanges, known.launches,
-                   f"surface, from {near.ranks}")
+    return Traffic(
+        known.exchanges * neighbours(ranks),
+        known.bytes * grown,
+        known.boundary * grown,
+        known.imbalance,
+        known.exchanges,
+        known.launches,
+        f"surface, from {near.ranks}",
+    )
 
 
 def step_time(per_rank, traffic, rates, machine):
@@ -110,43 +135,84 @@ def step_time(per_rank, traffic, rates, machine):
     launch = machine.launch_s if machine.launch_s is not None else rates.launch_s
     kernels = rates.kernel_s * per_rank * (1 + traffic.imbalance) / machine.bandwidth
     link = 2 * traffic.bytes / machine.link_bytes_per_s if machine.link_bytes_per_s else 0
-    exchange = traffic.messages * machine.network_latency_s + traffic.bytes / machine.network_bytes_per_s + link
+    exchange = (
+        traffic.messages * machine.network_latency_s
+        + traffic.bytes / machine.network_bytes_per_s
+        + link
+    )
     interior = kernels * (1 - min(1, traffic.boundary / per_rank))
-    return {"launches": traffic.launches * launch, "kernels": kernels, "exchange": max(0, exchange - interior),
-            "regroup": rates.regroup_s * per_rank / machine.bandwidth}
+    return {
+        "launches": traffic.launches * launch,
+        "kernels": kernels,
+        "exchange": max(0, exchange - interior),
+        "regroup": rates.regroup_s * per_rank / machine.bandwidth,
+    }
 
 
 def assumptions(rates, machine, records):
     launch = machine.launch_s if machine.launch_s is not None else rates.launch_s
     link = f"{machine.link_bytes_per_s:.3g} B/s" if machine.link_bytes_per_s else "no cost"
     device, first = records[0].raw["devices"][0]["name"], records[0].ranks
-    without = "" if records[0].of("kernels") else ", without kernel times: launches are in the kernels"
-    return [f"Rates: {rates.kernel_s * 1e9:.3g} ns of kernels and {rates.regroup_s * 1e9:.3g} ns of regroup per element and step, "
-            f"{rates.launches:.3g} launches per step, {rates.launch_s * 1e6:.3g} us each besides the kernel; "
-            f"from {device}, {first} rank{'s' if first > 1 else ''}{without}.",
-            f"Machine: memory {machine.bandwidth:.3g} times as fast, {launch * 1e6:.3g} us per launch, network {machine.network_bytes_per_s:.3g} B/s "
-            f"and {machine.network_latency_s * 1e6:.3g} us per message for each rank, device to host {link}.",
-            "Assumed: kernels and regroup take time in proportion to elements and to memory; the slowest rank, 1 + U times the mean, sets the pace;",
-            "messages leave one after the other and hide under the kernels of the interior, the share of elements that nobody else needs;",
-            "where no run has measured it, what is sent goes with the surface of a cubic subdomain, neighbours with its faces, edges, corners, and U",
-            "stays that of the run next in ranks. Not in it: collectives, output, a network that slows when all send."]
+    without = (
+        "" if records[0].of("kernels") else ", without kernel times: launches are in the kernels"
+    )
+    return [
+        f"Rates: {rates.kernel_s * 1e9:.3g} ns of kernels and {rates.regroup_s * 1e9:.3g} ns of regroup per element and step, "
+        f"{rates.launches:.3g} launches per step, {rates.launch_s * 1e6:.3g} us each besides the kernel; "
+        f"from {device}, {first} rank{'s' if first > 1 else ''}{without}.",
+        f"Machine: memory {machine.bandwidth:.3g} times as fast, {launch * 1e6:.3g} us per launch, network {machine.network_bytes_per_s:.3g} B/s "
+        f"and {machine.network_latency_s * 1e6:.3g} us per message for each rank, device to host {link}.",
+        "Assumed: kernels and regroup take time in proportion to elements and to memory; the slowest rank, 1 + U times the mean, sets the pace;",
+        "messages leave one after the other and hide under the kernels of the interior, the share of elements that nobody else needs;",
+        "where no run has measured it, what is sent goes with the surface of a cubic subdomain, neighbours with its faces, edges, corners, and U",
+        "stays that of the run next in ranks. Not in it: collectives, output, a network that slows when all send.",
+    ]
 
 
-TITLES = ["scaling", "ranks", "elements per rank", "U [1]", "sent per rank [kB]", "messages per rank", "traffic", "launches [us]", "kernels [us]",
-          "exchange not hidden [us]", "regroup [us]", "step [us]", "speed-up", "efficiency [%]"]
+TITLES = [
+    "scaling",
+    "ranks",
+    "elements per rank",
+    "U [1]",
+    "sent per rank [kB]",
+    "messages per rank",
+    "traffic",
+    "launches [us]",
+    "kernels [us]",
+    "exchange not hidden [us]",
+    "regroup [us]",
+    "step [us]",
+    "speed-up",
+    "efficiency [%]",
+]
 
 
 def predict(kind, ranks, elements, records, rates, machine):
     """Rows of a table. elements: of all ranks (strong), or of each (weak)."""
-    rows, alone = [], sum(step_time(elements, traffic_at(1, elements, records, rates), rates, machine).values())
+    rows, alone = [], sum(
+        step_time(elements, traffic_at(1, elements, records, rates), rates, machine).values()
+    )
     for n in ranks:
         per_rank = elements / n if kind == "strong" else elements
         t = traffic_at(n, per_rank, records, rates)
         parts = step_time(per_rank, t, rates, machine)
         step = sum(parts.values())
         speed = alone / step * (1 if kind == "strong" else n)
-        rows.append([kind, n, per_rank, t.imbalance, t.bytes / 1e3, t.messages, t.source, *(1e6 * p for p in parts.values()), 1e6 * step, speed,
-                     100 * speed / n])
+        rows.append(
+            [
+                kind,
+                n,
+                per_rank,
+                t.imbalance,
+                t.bytes / 1e3,
+                t.messages,
+                t.source,
+                *(1e6 * p for p in parts.values()),
+                1e6 * step,
+                speed,
+                100 * speed / n,
+            ]
+        )
     return rows
 
 
@@ -156,8 +222,20 @@ def check(paths, machine):
     rates, rows = rates_of(records[0]), []
     for r in records:
         per_rank = r.elements / r.ranks
-        step = sum(step_time(per_rank, traffic_at(r.ranks, per_rank, records, rates), rates, machine).values())
-        rows.append([r.ranks, r.elements, 1e6 * step, 1e6 * r.loop / r.steps, 100 * (step * r.steps / r.loop - 1)])
+        step = sum(
+            step_time(
+                per_rank, traffic_at(r.ranks, per_rank, records, rates), rates, machine
+            ).values()
+        )
+        rows.append(
+            [
+                r.ranks,
+                r.elements,
+                1e6 * step,
+                1e6 * r.loop / r.steps,
+                100 * (step * r.steps / r.loop - 1),
+            ]
+        )
     return records, rates, rows
 
 
@@ -185,15 +263,35 @@ def draw(path, rows):
 
 
 def arguments():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("runs", nargs="*", metavar="RUN", help="folders of results, or run.json")
-    parser.add_argument("--check", nargs="+", metavar="RUN", help="predict these from the first, and compare")
+    parser.add_argument(
+        "--check", nargs="+", metavar="RUN", help="predict these from the first, and compare"
+    )
     parser.add_argument("--machine", type=pathlib.Path, metavar="FILE", help="YAML, see above")
-    parser.add_argument("--ranks", type=study.numbers, default=[1, 2, 4, 8, 16, 32, 64, 128], help="(default: 1,2,4,...,128)")
-    parser.add_argument("--elements", type=float, help="strong scaling: of all ranks (default: as measured); weak: the same on each")
+    parser.add_argument(
+        "--ranks",
+        type=study.numbers,
+        default=[1, 2, 4, 8, 16, 32, 64, 128],
+        help="(default: 1,2,4,...,128)",
+    )
+    parser.add_argument(
+        "--elements",
+        type=float,
+        help="strong scaling: of all ranks (default: as measured); weak: the same on each",
+    )
     for field in dataclasses.fields(Machine):
-        parser.add_argument("--" + field.name.replace("_", "-"), type=float, metavar="X", help="of the machine")
-    parser.add_argument("--out", type=pathlib.Path, default=places.OUT / "model", help="folder of the results (default: out/model)")
+        parser.add_argument(
+            "--" + field.name.replace("_", "-"), type=float, metavar="X", help="of the machine"
+        )
+    parser.add_argument(
+        "--out",
+        type=pathlib.Path,
+        default=places.OUT / "model",
+        help="folder of the results (default: out/model)",
+    )
     options = parser.parse_args()
     if bool(options.runs) == bool(options.check):
         parser.error("either RUN..., or --check RUN...")
@@ -205,9 +303,13 @@ def machine_of(options):
     names = [f.name for f in dataclasses.fields(Machine)]
     wrong = [key for key in given if key not in names]
     if wrong:
-        sys.exit(f"model: {options.machine}: unknown key '{wrong[0]}'; there are {', '.join(names)}")
+        sys.exit(
+            f"model: {options.machine}: unknown key '{wrong[0]}'; there are {', '.join(names)}"
+        )
     given.update({n: getattr(options, n) for n in names if getattr(options, n) is not None})
-    return Machine(**{name: float(value) for name, value in given.items()})  # YAML 1.1 takes 2e-6 for text
+    return Machine(
+        **{name: float(value) for name, value in given.items()}
+    )  # YAML 1.1 takes 2e-6 for text
 
 
 def main():
@@ -222,7 +324,11 @@ def main():
     records = sorted((study.Record(p) for p in options.runs), key=lambda r: r.ranks)
     rates = rates_of(records[0])
     elements = options.elements or records[0].elements
-    rows = [row for kind in ("strong", "weak") for row in predict(kind, options.ranks, elements, records, rates, machine)]
+    rows = [
+        row
+        for kind in ("strong", "weak")
+        for row in predict(kind, options.ranks, elements, records, rates, machine)
+    ]
     study.write_table(options.out / "model", TITLES, rows, assumptions(rates, machine, records))
     draw(options.out / "model.png", rows)
     print(options.out / "model.png")

@@ -9,17 +9,25 @@ MPIRUN = os.environ.get("DEMOCLES_MPIRUN", "mpirun")
 # No binding: the program shares the cores of a node among its ranks by itself.
 OPEN_MPI = ["--oversubscribe", "--bind-to", "none"]
 OPEN_MPI_ENVIRONMENT = {
-    "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",  # version 5 spells them PRTE_
-    "PRTE_ALLOW_RUN_AS_ROOT": "1", "PRTE_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+    "OMPI_ALLOW_RUN_AS_ROOT": "1",
+    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",  # version 5 spells them PRTE_
+    "PRTE_ALLOW_RUN_AS_ROOT": "1",
+    "PRTE_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
     "OMPI_MCA_btl_vader_single_copy_mechanism": "none",  # containers forbid it
-    "OMPI_MCA_mpi_yield_when_idle": "1"}
+    "OMPI_MCA_mpi_yield_when_idle": "1",
+}
 
 
 @functools.lru_cache
 def is_open_mpi():
     """Else it is MPICH, or one of those that descend from it and share its mpirun."""
     try:
-        return "Open MPI" in subprocess.run([MPIRUN, "--version"], capture_output=True, text=True, check=False).stdout
+        return (
+            "Open MPI"
+            in subprocess.run(
+                [MPIRUN, "--version"], capture_output=True, text=True, check=False
+            ).stdout
+        )
     except OSError as error:
         sys.exit(f"there is no {MPIRUN}: {error.strerror}; DEMOCLES_MPIRUN names another")
 

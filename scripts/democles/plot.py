@@ -23,7 +23,10 @@ def read(path):
         rows = list(csv.reader(file))
     if not rows or not rows[0] or not rows[0][0].startswith("time ["):
         return None, None
-    titles = [re.fullmatch(r"(.*?)(?: \[(.*)\])?", title, re.DOTALL).groups(default="") for title in rows[0]]
+    titles = [
+        re.fullmatch(r"(.*?)(?: \[(.*)\])?", title, re.DOTALL).groups(default="")
+        for title in rows[0]
+    ]
     values = [[float(v) for v in row] for row in rows[1:] if len(row) == len(titles) and all(row)]
     return titles, numpy.array(values).reshape(len(values), len(titles))
 
@@ -31,21 +34,42 @@ def read(path):
 def axis_label(names, unit):
     """The unit with the name, where there is one name only."""
     shown = "" if unit in ("", "1") else f"[{unit}]"
-    return " ".join(part for part in (names[0].replace("_", " ") if len(names) == 1 else "", shown) if part)
+    return " ".join(
+        part for part in (names[0].replace("_", " ") if len(names) == 1 else "", shown) if part
+    )
 
 
 def draw(path, titles, values):
     units = list(dict.fromkeys(unit for _, unit in titles[1:]))
-    figure, axes = plt.subplots(len(units), 1, sharex=True, squeeze=False, figsize=(8, 1 + 3.5 * len(units)), layout="constrained")
+    figure, axes = plt.subplots(
+        len(units),
+        1,
+        sharex=True,
+        squeeze=False,
+        figsize=(8, 1 + 3.5 * len(units)),
+        layout="constrained",
+    )
     for axis, unit in zip(axes[:, 0], units):
         columns = [k for k in range(1, len(titles)) if titles[k][1] == unit]
         names = [titles[k][0] for k in columns]
         # ten colours that are easily told apart; more lines take theirs from a scale and differ by dashes
-        colours = plt.get_cmap("tab10").colors if len(columns) <= 10 else plt.get_cmap("turbo")(numpy.linspace(0.05, 0.95, len(columns)))
+        colours = (
+            plt.get_cmap("tab10").colors
+            if len(columns) <= 10
+            else plt.get_cmap("turbo")(numpy.linspace(0.05, 0.95, len(columns)))
+        )
         for n, (k, name) in enumerate(zip(columns, names)):
             style = DASHES[n % len(DASHES)] if len(columns) > 10 else "-"
             marker = "o" if len(values) < 2 else None
-            axis.plot(values[:, 0], values[:, k], color=colours[n], ls=style, label=name.replace("_", " "), lw=1.4, marker=marker)
+            axis.plot(
+                values[:, 0],
+                values[:, k],
+                color=colours[n],
+                ls=style,
+                label=name.replace("_", " "),
+                lw=1.4,
+                marker=marker,
+            )
         axis.set_ylabel(axis_label(names, unit), size=12)
         axis.grid(color="0.9")
         axis.spines[["top", "right"]].set_visible(False)
@@ -61,13 +85,17 @@ def draw(path, titles, values):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("dir", metavar="DIR", type=pathlib.Path, help="folder of results")
     parser.add_argument("name", metavar="NAME", nargs="*", help="name of a measure")
     options = parser.parse_args()
     if not options.dir.is_dir():
         sys.exit(f"plot: there is no folder {options.dir}")
-    paths = [options.dir / (name + ".csv") for name in options.name] or sorted(options.dir.glob("*.csv"))
+    paths = [options.dir / (name + ".csv") for name in options.name] or sorted(
+        options.dir.glob("*.csv")
+    )
     for path in paths:
         if not path.is_file():
             sys.exit(f"plot: there is no {path}")

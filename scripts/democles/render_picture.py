@@ -13,6 +13,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy  # noqa: E402
 
 from democles import frames, render_walls  # noqa: E402
+from democles.render_colours import Colours  # noqa: E402
 from democles.render_view import View, corners_of, view_axes  # noqa: E402
 
 SAMPLES = 8  # frames that the ends of the colour bar and the extent of the picture are taken from
@@ -26,62 +27,6 @@ def spread(items, n):
     return [items[round(k * (len(items) - 1) / (n - 1))] for k in range(n)]
 
 
-class Colours:
-    """A field as numbers for colours: its magnitude, name, unit, ends and map."""
-
-    def __init__(self, samples, name, ends):
-        names = samples[0].names
-        preferred = [n for n in ("von_mises", "velocity") if n in names] + names + ["radius"]
-        self.name = name or preferred[0]
-        values = [self.of(frame) for frame in samples if len(frame.points)] or [numpy.zeros(1)]
-        everything = numpy.concatenate(values)
-        everything = everything[numpy.isfinite(everything)]
-        self.unit = samples[0].unit(self.name)
-        self.is_vector = samples[0].field(self.name).ndim > 1
-        self.levels, self.is_cut = 256, False
-        self.words = []  # what the whole numbers from 0 on are called; none: their digits
-        self.low, self.high = self.ends(everything, numpy.issubdtype(samples[0].field(self.name).dtype, numpy.integer)) if not ends else ends
-
-    def ends(self, values, is_integer):
-        """Whole numbers get a colour each where they are few; else the fastest half per cent share the last colour."""
-        if not len(values):
-            return 0.0, 1.0
-        low, high = float(values.min()), float(values.max())
-        if is_integer and high - low <= 20:
-            self.levels = int(high - low) + 1
-            return low - 0.5, high + 0.5
-        if self.is_vector:
-            low = 0.0
-        high = float(numpy.percentile(values, 99.5))
-        self.is_cut = 1.05 * high < float(values.max())  # what lies below that cannot be seen
-        if not high > low:
-            high = low + max(abs(low), 1.0) * 1e-3 if not self.is_vector else 1.0
-        return low, high
-
-    def of(self, frame):
-        values = numpy.asarray(frame.field(self.name), float)
-        return numpy.linalg.norm(values, axis=1) if values.ndim > 1 else values
-
-    def map(self):
-        """viridis without its darkest part, in which spheres would lose their shading."""
-        return matplotlib.colors.ListedColormap(plt.get_cmap("viridis")(numpy.linspace(0.16, 1, self.levels)))
-
-    def prefix(self):
-        """(1e6, "M") for millions of pascals, (1e-3, "m") for small speeds: the prefix that leaves the largest value between 1 and 1000.
-        Kilograms have one already; numbers without a unit take none."""
-        large = max(abs(self.low), abs(self.high))
-        if not self.unit or self.unit.startswith("kg") or 0.1 <= large < 1000:
-            return 1, ""
-        prefixes = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1, ""), (1e-3, "m"), (1e-6, "\u00b5"), (1e-9, "n"))
-        return next((p for p in prefixes if large >= p[0]), prefixes[-1])
-
-    def label(self, prefix=""):
-        known = {"von_mises": "von Mises stress", "velocity": "speed", "angular_velocity": "angular speed"}
-        name = known.get(self.name, self.name.replace("_", " "))
-        share = ", largest 0.5 % in the last colour" if self.is_cut else ""
-        return (f"{name} [{prefix}{self.unit}]" if self.unit else name) + share
-
-
 def words(scene, field):
     """Names of materials or bodies in the order of their numbers in a frame."""
     if field == "material":
@@ -92,7 +37,9 @@ def words(scene, field):
 def magnification(samples):
     """Round factor that makes the largest displacement of a solid a twelfth of its size; 1 for what moves farther by itself."""
     solids = [frame for frame in samples if frame.corners is not None]
-    largest = max((numpy.linalg.norm(frame.displacement, axis=2).max() for frame in solids), default=0)
+    largest = max(
+        (numpy.linalg.norm(frame.displacement, axis=2).max() for frame in solids), default=0
+    )
     if not largest > 0:
         return 1.0
     size = max(numpy.ptp(solids[0].corners.reshape(-1, 3), axis=0))
@@ -108,16 +55,24 @@ def extent(samples, walls, warp):
     for frame in samples:
         if frame.corners is not None:
             placed = (frame.corners + warp * frame.displacement).reshape(-1, 3)
-            low, high = numpy.minimum(low, placed.min(axis=0)), numpy.maximum(high, placed.max(axis=0))
+            low, high = numpy.minimum(low, placed.min(axis=0)), numpy.maximum(
+                high, placed.max(axis=0)
+            )
         elif len(frame.points):
             r = frame.field("radius")[:, None]
-            low, high = numpy.minimum(low, (frame.points - r).min(axis=0)), numpy.maximum(high, (frame.points + r).max(axis=0))
+            low, high = numpy.minimum(low, (frame.points - r).min(axis=0)), numpy.maximum(
+                high, (frame.points + r).max(axis=0)
+            )
         for wall in walls:
-            points = render_walls.vertices(wall) if render_walls.is_there(wall, frame.time) else None
+            points = (
+                render_walls.vertices(wall) if render_walls.is_there(wall, frame.time) else None
+            )
             if points is not None:
                 rotation, translation = render_walls.pose(wall, frame.time)
                 placed = points @ rotation.T + translation
-                low, high = numpy.minimum(low, placed.min(axis=0)), numpy.maximum(high, placed.max(axis=0))
+                low, high = numpy.minimum(low, placed.min(axis=0)), numpy.maximum(
+                    high, placed.max(axis=0)
+                )
     if not numpy.all(numpy.isfinite(low)):
         low, high = -numpy.ones(3), numpy.ones(3)
     margin = 0.02 * max(high - low)
@@ -139,9 +94,16 @@ class Layout:
     def __init__(self, size, n, title, colours, axes, low, high, plain):
         width, height = size
         self.figure = plt.figure(figsize=(width / 100, height / 100), dpi=100, facecolor="white")
-        self.width, self.height, self.plain, self.text = width, height, plain, max(min(width / 100, height / 42), 8)
+        self.width, self.height, self.plain, self.text = (
+            width,
+            height,
+            plain,
+            max(min(width / 100, height / 42), 8),
+        )
         self.line = self.text / 72 * 100 / height  # of text, as a share of the page
-        self.top, self.bottom = (0, 0) if plain else (2.6 * self.line if title else 0.02, 5.4 * self.line)
+        self.top, self.bottom = (
+            (0, 0) if plain else (2.6 * self.line if title else 0.02, 5.4 * self.line)
+        )
         spans = numpy.ptp(corners_of(low, high) @ numpy.array(axes[:2]).T, axis=0)
         label = 0 if plain else 2.2 * self.text / 72 * 100  # pixels above each panel, for its time
         area_w, area_h = width, height * (1 - self.top - self.bottom)
@@ -149,20 +111,48 @@ class Layout:
         for columns in (c for c in range(1, n + 1) if n % c == 0):  # full rows
             rows = -(-n // columns)
             panel = area_w / columns, area_h / rows - label
-            scales.append((min(panel[0] * 0.96 / spans[0], panel[1] * 0.98 / spans[1]), -rows, columns, panel))
+            scales.append(
+                (min(panel[0] * 0.96 / spans[0], panel[1] * 0.98 / spans[1]), -rows, columns, panel)
+            )
         self.pixels_per_metre, _, columns, panel = max(scales)
         self.panel = int(panel[0]), int(panel[1])
         self.images, self.labels = [], []
         for k in range(n):
-            left, top = (k % columns) * area_w / columns, height * self.top + (k // columns) * (panel[1] + label)
-            self.labels.append(self.figure.text((left + panel[0] / 2) / width, 1 - (top + 0.75 * label) / height, "", size=self.text, ha="center"))
-            axis = self.figure.add_axes((left / width, 1 - (top + label + panel[1]) / height, panel[0] / width, panel[1] / height))
+            left, top = (k % columns) * area_w / columns, height * self.top + (k // columns) * (
+                panel[1] + label
+            )
+            self.labels.append(
+                self.figure.text(
+                    (left + panel[0] / 2) / width,
+                    1 - (top + 0.75 * label) / height,
+                    "",
+                    size=self.text,
+                    ha="center",
+                )
+            )
+            axis = self.figure.add_axes(
+                (
+                    left / width,
+                    1 - (top + label + panel[1]) / height,
+                    panel[0] / width,
+                    panel[1] / height,
+                )
+            )
             axis.axis("off")
-            self.images.append(axis.imshow(numpy.full((2, 2, 3), 255, numpy.uint8), extent=(0, 1, 0, 1), aspect="auto", interpolation="antialiased"))
+            self.images.append(
+                axis.imshow(
+                    numpy.full((2, 2, 3), 255, numpy.uint8),
+                    extent=(0, 1, 0, 1),
+                    aspect="auto",
+                    interpolation="antialiased",
+                )
+            )
         if plain:
             return
         if title:
-            self.figure.text(0.02, 1 - self.top / 2, title, size=1.35 * self.text, va="center", weight="bold")
+            self.figure.text(
+                0.02, 1 - self.top / 2, title, size=1.35 * self.text, va="center", weight="bold"
+            )
         self.colour_bar(colours)
         self.scale_bar()
 
@@ -170,11 +160,18 @@ class Layout:
         axis = self.figure.add_axes((0.3, 3.6 * self.line, 0.4, 0.8 * self.line))
         factor, prefix = colours.prefix()
         norm = matplotlib.colors.Normalize(colours.low / factor, colours.high / factor)
-        bar = self.figure.colorbar(matplotlib.cm.ScalarMappable(norm, colours.map()), cax=axis, orientation="horizontal")
+        bar = self.figure.colorbar(
+            matplotlib.cm.ScalarMappable(norm, colours.map()), cax=axis, orientation="horizontal"
+        )
         bar.set_label(colours.label(prefix), size=self.text)
         if colours.levels < 256:
-            ticks = range(math.ceil(colours.low), math.floor(colours.high) + 1, max(1, colours.levels // 10))
-            bar.set_ticks(ticks, labels=[colours.words[t] if t < len(colours.words) else str(t) for t in ticks])
+            ticks = range(
+                math.ceil(colours.low), math.floor(colours.high) + 1, max(1, colours.levels // 10)
+            )
+            bar.set_ticks(
+                ticks,
+                labels=[colours.words[t] if t < len(colours.words) else str(t) for t in ticks],
+            )
         bar.ax.tick_params(labelsize=0.9 * self.text)
 
     def scale_bar(self):
@@ -182,12 +179,28 @@ class Layout:
         longest = self.width / 8 / self.pixels_per_metre
         power = 10.0 ** math.floor(math.log10(longest))
         length = max(m * power for m in (1, 2, 5) if m * power <= longest)
-        factor, unit = next((f, u) for f, u in ((1, "m"), (1e3, "mm"), (1e6, "µm"), (1e9, "nm")) if length * f >= 0.999 or u == "nm")
+        factor, unit = next(
+            (f, u)
+            for f, u in ((1, "m"), (1e3, "mm"), (1e6, "µm"), (1e9, "nm"))
+            if length * f >= 0.999 or u == "nm"
+        )
         pixels = length * self.pixels_per_metre / self.width
         height = 4 * self.line
-        line = matplotlib.lines.Line2D((0.02, 0.02 + pixels), (height, height), color="black", lw=self.text / 6, solid_capstyle="butt")
+        line = matplotlib.lines.Line2D(
+            (0.02, 0.02 + pixels),
+            (height, height),
+            color="black",
+            lw=self.text / 6,
+            solid_capstyle="butt",
+        )
         self.figure.add_artist(line)
-        self.figure.text(0.02, height - 0.5 * self.line, f"{length * factor:g} {unit}", size=0.9 * self.text, va="top")
+        self.figure.text(
+            0.02,
+            height - 0.5 * self.line,
+            f"{length * factor:g} {unit}",
+            size=0.9 * self.text,
+            va="top",
+        )
 
     def put(self, k, image, text):
         self.images[k].set_data(image)
@@ -217,7 +230,16 @@ class Picture:
             title += f" (displacements \u00d7 {warp:g})"
         self.layout = Layout(size, n, title, self.colours, axes, low, high, options.plain)
         colour_table = self.colours.map()(numpy.linspace(0, 1, self.colours.levels))
-        self.view = View(self.layout.panel, sharpness, axes, (low, high), self.layout.pixels_per_metre, self.walls, colour_table, warp)
+        self.view = View(
+            self.layout.panel,
+            sharpness,
+            axes,
+            (low, high),
+            self.layout.pixels_per_metre,
+            self.walls,
+            colour_table,
+            warp,
+        )
 
     def draw(self, chosen):
         for k, frame in enumerate(chosen):
@@ -234,8 +256,33 @@ def write_film(options, paths, size):
     picture = Picture(options, paths, 1, samples, size, 1)
     fps = options.fps[0] if options.fps else min(25, max(5, len(paths) / 8))
     out = options.out or os.path.join(options.dir, "film.mp4")
-    command = ["ffmpeg", "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{size[0]}x{size[1]}", "-r", str(fps), "-i", "-",
-               "-c:v", "libx264", "-preset", "veryfast", "-crf", "20", "-pix_fmt", "yuv420p", "-movflags", "+faststart", out]
+    command = [
+        "ffmpeg",
+        "-y",
+        "-loglevel",
+        "error",
+        "-f",
+        "rawvideo",
+        "-pix_fmt",
+        "rgb24",
+        "-s",
+        f"{size[0]}x{size[1]}",
+        "-r",
+        str(fps),
+        "-i",
+        "-",
+        "-c:v",
+        "libx264",
+        "-preset",
+        "veryfast",
+        "-crf",
+        "20",
+        "-pix_fmt",
+        "yuv420p",
+        "-movflags",
+        "+faststart",
+        out,
+    ]
     with subprocess.Popen(command, stdin=subprocess.PIPE) as film:
         for k, path in enumerate(paths):
             film.stdin.write(picture.draw([frames.Frame(path)]).tobytes())
@@ -283,4 +330,3 @@ def draw(options):
     size = options.size or ([1280, 720] if options.film else [1600, 1000])
     size = [v - v % 2 for v in size]  # films want even numbers
     return write_film(options, paths, size) if options.film else write_picture(options, paths, size)
-

@@ -5,7 +5,13 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray,
 from vtkmodules.vtkCommonCore import vtkLookupTable, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkFeatureEdges
-from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow, vtkWindowToImageFilter
+from vtkmodules.vtkRenderingCore import (
+    vtkActor,
+    vtkPolyDataMapper,
+    vtkRenderer,
+    vtkRenderWindow,
+    vtkWindowToImageFilter,
+)
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLSphereMapper
 
 from democles import render_walls
@@ -21,15 +27,27 @@ def view_axes(low, high, gravity, towards=None):
     """Right, up and back (to the eye) of the picture, unit vectors. Up is against gravity; the eye looks along the thinnest extent, a little from
     the side and from above, so that it is seen to be a body."""
     gravity = numpy.array([float(g) for g in gravity or (0, 0, 0)])
-    up = -gravity / numpy.linalg.norm(gravity) if numpy.linalg.norm(gravity) > 0 else numpy.array([0.0, 0.0, 1.0])
+    up = (
+        -gravity / numpy.linalg.norm(gravity)
+        if numpy.linalg.norm(gravity) > 0
+        else numpy.array([0.0, 0.0, 1.0])
+    )
     if towards is None:
         thin = int(numpy.argmin(high - low))
-        back = numpy.eye(3)[thin] * (-1 if thin == 1 else 1)  # from -y the x axis points to the right
-        if abs(back @ up) > 0.9:  # thin in the direction of gravity: from the side, turned, well above
+        back = numpy.eye(3)[thin] * (
+            -1 if thin == 1 else 1
+        )  # from -y the x axis points to the right
+        if (
+            abs(back @ up) > 0.9
+        ):  # thin in the direction of gravity: from the side, turned, well above
             along, across = (a for a in range(3) if a != thin)
             if (high - low)[across] > 1.25 * (high - low)[along]:
                 along, across = across, along
-            back = numpy.eye(3)[across] * (-1 if across == 1 else 1) - 0.45 * numpy.eye(3)[along] + 0.75 * up
+            back = (
+                numpy.eye(3)[across] * (-1 if across == 1 else 1)
+                - 0.45 * numpy.eye(3)[along]
+                + 0.75 * up
+            )
         else:
             back = back + 0.32 * numpy.cross(up, back) + 0.22 * up
     else:
@@ -45,19 +63,35 @@ def view_axes(low, high, gravity, towards=None):
 def single_points(n):
     """n cells of one point each: what has no cells is not drawn."""
     cells = vtkCellArray()
-    begin, ids = (numpy_to_vtkIdTypeArray(numpy.arange(m, dtype=numpy.int64), deep=True) for m in (n + 1, n))
+    begin, ids = (
+        numpy_to_vtkIdTypeArray(numpy.arange(m, dtype=numpy.int64), deep=True) for m in (n + 1, n)
+    )
     cells.SetData(begin, ids)
     return cells
 
 
-FACES = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))  # of a hexahedron, corners in VTK's order
+FACES = (
+    (0, 3, 2, 1),
+    (4, 5, 6, 7),
+    (0, 1, 5, 4),
+    (1, 2, 6, 5),
+    (2, 3, 7, 6),
+    (3, 0, 4, 7),
+)  # of a hexahedron, corners in VTK's order
 
 
 def faces_of(n):
     """The six faces of n hexahedra with eight points each."""
-    ids = (8 * numpy.arange(n, dtype=numpy.int64)[:, None, None] + numpy.array(FACES, numpy.int64)).reshape(-1)
+    ids = (
+        8 * numpy.arange(n, dtype=numpy.int64)[:, None, None] + numpy.array(FACES, numpy.int64)
+    ).reshape(-1)
     cells = vtkCellArray()
-    cells.SetData(*(numpy_to_vtkIdTypeArray(a, deep=True) for a in (numpy.arange(0, len(ids) + 1, 4, dtype=numpy.int64), ids)))
+    cells.SetData(
+        *(
+            numpy_to_vtkIdTypeArray(a, deep=True)
+            for a in (numpy.arange(0, len(ids) + 1, 4, dtype=numpy.int64), ids)
+        )
+    )
     return cells
 
 
@@ -87,7 +121,9 @@ class View:
             table.SetTableValue(k, *colour)
         spheres = vtkOpenGLSphereMapper()
         spheres.SetScaleArray("radius")
-        self.elements, self.solid = (self.add_body(mapper, table) for mapper in (spheres, vtkPolyDataMapper()))
+        self.elements, self.solid = (
+            self.add_body(mapper, table) for mapper in (spheres, vtkPolyDataMapper())
+        )
 
     def add_body(self, mapper, table):
         """(data, mapper, actor) of what has colours."""
@@ -118,7 +154,9 @@ class View:
         actors = []
         for k in range(2):
             mapper, actor = vtkPolyDataMapper(), vtkActor()
-            mapper.SetInputData(surface) if k == 0 else mapper.SetInputConnection(edges.GetOutputPort())
+            mapper.SetInputData(surface) if k == 0 else mapper.SetInputConnection(
+                edges.GetOutputPort()
+            )
             mapper.ScalarVisibilityOff()
             actor.SetMapper(mapper)
             look = actor.GetProperty()
@@ -167,9 +205,17 @@ class View:
         self.solid[2].SetVisibility(is_solid)
         if is_solid:
             at = (frame.corners + self.warp * frame.displacement).reshape(-1, 3)
-            self.place(self.solid, at, faces_of(n), [("colour", numpy.repeat(values, len(FACES)))], ends)
+            self.place(
+                self.solid, at, faces_of(n), [("colour", numpy.repeat(values, len(FACES)))], ends
+            )
         elif n:
-            self.place(self.elements, frame.points, single_points(n), [("radius", frame.field("radius")), ("colour", values)], ends)
+            self.place(
+                self.elements,
+                frame.points,
+                single_points(n),
+                [("radius", frame.field("radius")), ("colour", values)],
+                ends,
+            )
         for wall, actors in self.walls:
             for actor in actors:
                 actor.SetVisibility(render_walls.is_there(wall, frame.time))
@@ -179,8 +225,12 @@ class View:
         self.grab.Update()
         image = self.grab.GetOutput()
         width, height, _ = image.GetDimensions()
-        pixels = vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width, -1)[::-1, :, :3]
+        pixels = vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width, -1)[
+            ::-1, :, :3
+        ]
         s = self.sharpness
         if s == 1:
             return pixels
-        return pixels.reshape(height // s, s, width // s, s, 3).mean(axis=(1, 3)).astype(numpy.uint8)
+        return (
+            pixels.reshape(height // s, s, width // s, s, 3).mean(axis=(1, 3)).astype(numpy.uint8)
+        )

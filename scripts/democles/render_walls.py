@@ -71,13 +71,19 @@ def cut(corners, axis, sign, bound):
 def rectangle(surface):
     centre, normal = vector(surface["center"]), unit(vector(surface["normal"]))
     (u, v), (a, b) = rectangle_axes(normal), vector(surface["size"]) / 2
-    return polygons([centre + i * a * u + j * b * v for i, j in ((-1, -1), (1, -1), (1, 1), (-1, 1))], [range(4)])
+    return polygons(
+        [centre + i * a * u + j * b * v for i, j in ((-1, -1), (1, -1), (1, 1), (-1, 1))],
+        [range(4)],
+    )
 
 
 def box(surface):
     low, high = vector(surface["min"]), vector(surface["max"])
     corners = [[(low, high)[k >> a & 1][a] for a in range(3)] for k in range(8)]
-    return polygons(corners, [(0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5)])
+    return polygons(
+        corners,
+        [(0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5)],
+    )
 
 
 def cylinder(surface):
@@ -86,7 +92,10 @@ def cylinder(surface):
     angle = 2 * math.pi * numpy.arange(CYLINDER_SIDES) / CYLINDER_SIDES
     ring = radius * (numpy.outer(numpy.cos(angle), u) + numpy.outer(numpy.sin(angle), v))
     n = CYLINDER_SIDES
-    return polygons(numpy.vstack((start + ring, end + ring)), [(k, (k + 1) % n, n + (k + 1) % n, n + k) for k in range(n)])
+    return polygons(
+        numpy.vstack((start + ring, end + ring)),
+        [(k, (k + 1) % n, n + (k + 1) % n, n + k) for k in range(n)],
+    )
 
 
 def stl(surface):
@@ -138,7 +147,11 @@ def pose(wall, time):
         shift = shift + math.sin(phase) * vector(swing["amplitude"])
     rotation, centre = numpy.eye(3), numpy.zeros(3)
     if turn:
-        a, angle, centre = unit(vector(turn["axis"])), number(turn["rate"]) * time, vector(turn["center"])
+        a, angle, centre = (
+            unit(vector(turn["axis"])),
+            number(turn["rate"]) * time,
+            vector(turn["center"]),
+        )
         cross = numpy.array([[0, -a[2], a[1]], [a[2], 0, -a[0]], [-a[1], a[0], 0]])
         rotation = numpy.eye(3) + math.sin(angle) * cross + (1 - math.cos(angle)) * cross @ cross
     return rotation, centre + shift - rotation @ centre

@@ -25,12 +25,27 @@ SHARES = (0.1, 0.5, 0.9)  # of all elements; the times at which they have passed
 
 
 def arguments():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("case", metavar="CASE")
-    parser.add_argument("--steps", default="4e-5,2e-5,1e-5,5e-6,2e-6", help="time steps [s], comma separated (default: %(default)s)")
-    parser.add_argument("--measure", default="outflow", help="the count to compare (default: %(default)s)")
-    parser.add_argument("--seeds", type=int, default=3, help="random starts that show the scatter (default: %(default)s)")
-    parser.add_argument("--seeds-step", help="time step of the further starts (default: the second of --steps)")
+    parser.add_argument(
+        "--steps",
+        default="4e-5,2e-5,1e-5,5e-6,2e-6",
+        help="time steps [s], comma separated (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--measure", default="outflow", help="the count to compare (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--seeds",
+        type=int,
+        default=3,
+        help="random starts that show the scatter (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--seeds-step", help="time step of the further starts (default: the second of --steps)"
+    )
     parser.add_argument("--ranks", default="2", help="MPI ranks (default: %(default)s)")
     parser.add_argument("--end", help="simulated time of all runs (default: the scene's)")
     parser.add_argument("--program", default=places.program())
@@ -38,14 +53,29 @@ def arguments():
 
 
 def run(options, folder, settings):
-    if (folder / "run.json").is_file() and json.loads((folder / "run.json").read_text())["exit"] == 0:
+    if (folder / "run.json").is_file() and json.loads((folder / "run.json").read_text())[
+        "exit"
+    ] == 0:
         return
-    command = mpi.command("-n", options.ranks, options.program, "run", str(places.CASES / options.case / "scene.yaml"), "-o", str(folder),
-                          "--force", "--quiet", "--set", "output.every=0")
+    command = mpi.command(
+        "-n",
+        options.ranks,
+        options.program,
+        "run",
+        str(places.CASES / options.case / "scene.yaml"),
+        "-o",
+        str(folder),
+        "--force",
+        "--quiet",
+        "--set",
+        "output.every=0",
+    )
     for setting in settings:
         command += ["--set", setting]
     print("step_study:", *command, flush=True)
-    code = subprocess.run(command, env=mpi.environment(), stdin=subprocess.DEVNULL, check=False).returncode
+    code = subprocess.run(
+        command, env=mpi.environment(), stdin=subprocess.DEVNULL, check=False
+    ).returncode
     if code:
         sys.exit(f"step_study: exit code {code}")
 
@@ -63,15 +93,38 @@ class Curve:
 
     def apart(self, other):
         """Largest distance of the curves, in shares of all elements."""
-        return float(numpy.abs(numpy.interp(self.time, other.time, other.count) - self.count).max()) / self.n
+        return (
+            float(numpy.abs(numpy.interp(self.time, other.time, other.count) - self.count).max())
+            / self.n
+        )
 
 
 def table(curves, finest):
     times = [f"{share:.0%} out [s]" for share in SHARES]
-    titles = ["run", "step [s]", "first [s]", *times, "out at end [1]", "largest distance from finest [1]", "wall [s]"]
-    rows = [[c.label, c.record["dt"], c.at(1 / c.n), *(c.at(share) for share in SHARES), c.count[-1] / c.n, c.apart(finest),
-             c.record["wall_s"]["loop"]] for c in curves]
-    return titles, [[cell if isinstance(cell, str) else f"{cell:.5g}" for cell in row] for row in rows]
+    titles = [
+        "run",
+        "step [s]",
+        "first [s]",
+        *times,
+        "out at end [1]",
+        "largest distance from finest [1]",
+        "wall [s]",
+    ]
+    rows = [
+        [
+            c.label,
+            c.record["dt"],
+            c.at(1 / c.n),
+            *(c.at(share) for share in SHARES),
+            c.count[-1] / c.n,
+            c.apart(finest),
+            c.record["wall_s"]["loop"],
+        ]
+        for c in curves
+    ]
+    return titles, [
+        [cell if isinstance(cell, str) else f"{cell:.5g}" for cell in row] for row in rows
+    ]
 
 
 def draw(path, title, steps, seeds, finest):
@@ -79,10 +132,20 @@ def draw(path, title, steps, seeds, finest):
     for k, c in enumerate(steps):
         colour = plt.get_cmap("viridis")(k / max(len(steps) - 1, 1) * 0.9)
         top.plot(c.time, c.count, color=colour, label=c.label)
-        bottom.plot(c.time, (c.count - numpy.interp(c.time, finest.time, finest.count)) / c.n * 100, color=colour)
+        bottom.plot(
+            c.time,
+            (c.count - numpy.interp(c.time, finest.time, finest.count)) / c.n * 100,
+            color=colour,
+        )
     for c in seeds:
         top.plot(c.time, c.count, color="0.6", lw=0.8, ls="--", label=c.label)
-        bottom.plot(c.time, (c.count - numpy.interp(c.time, finest.time, finest.count)) / c.n * 100, color="0.6", lw=0.8, ls="--")
+        bottom.plot(
+            c.time,
+            (c.count - numpy.interp(c.time, finest.time, finest.count)) / c.n * 100,
+            color="0.6",
+            lw=0.8,
+            ls="--",
+        )
     top.set_ylabel("elements that have passed")
     bottom.set_ylabel("difference from the smallest step\n[% of all elements]")
     bottom.set_xlabel("time [s]")
@@ -102,8 +165,14 @@ def main():
     seeds_step = options.seeds_step or values[min(1, len(values) - 1)]
     group = expect.first_group(places.CASES / options.case / "scene.yaml")
     plan = [(f"dt = {v} s", out / f"step_{v}", [f"time.step={v}"]) for v in values]
-    plan += [(f"seed {k}, dt = {seeds_step} s", out / f"seed_{k}_{seeds_step}", [f"time.step={seeds_step}", f"elements.{group}.fill.seed={100 + k}"])
-             for k in range(1, options.seeds + 1)]
+    plan += [
+        (
+            f"seed {k}, dt = {seeds_step} s",
+            out / f"seed_{k}_{seeds_step}",
+            [f"time.step={seeds_step}", f"elements.{group}.fill.seed={100 + k}"],
+        )
+        for k in range(1, options.seeds + 1)
+    ]
     out.mkdir(parents=True, exist_ok=True)
     for _, folder, settings in plan:
         run(options, folder, settings + extra)
@@ -111,12 +180,27 @@ def main():
     finest = min(curves[: len(values)], key=lambda c: c.record["dt"])
     titles, rows = table(curves, finest)
     with open(out / "step_study.csv", "w") as file:
-        file.writelines(",".join(row) + "\n" for row in [titles, *([cell.replace(",", ";") for cell in row] for row in rows)])
+        file.writelines(
+            ",".join(row) + "\n"
+            for row in [titles, *([cell.replace(",", ";") for cell in row] for row in rows)]
+        )
     times = numpy.linspace(0, finest.time[-1], 201)
     columns = [times, *(numpy.interp(times, c.time, c.count) for c in curves)]
-    numpy.savetxt(out / "curves.csv", numpy.transpose(columns), fmt="%.6g", delimiter=",", comments="",
-                  header=",".join(["time [s]", *(c.label.replace(",", ";") for c in curves)]))
-    draw(out / "step_study.png", f"{options.case}: {options.measure}", curves[: len(values)], curves[len(values) :], finest)
+    numpy.savetxt(
+        out / "curves.csv",
+        numpy.transpose(columns),
+        fmt="%.6g",
+        delimiter=",",
+        comments="",
+        header=",".join(["time [s]", *(c.label.replace(",", ";") for c in curves)]),
+    )
+    draw(
+        out / "step_study.png",
+        f"{options.case}: {options.measure}",
+        curves[: len(values)],
+        curves[len(values) :],
+        finest,
+    )
     print("| " + " | ".join(titles) + " |\n|" + "---|" * len(titles))
     for row in rows:
         print("| " + " | ".join(row) + " |")

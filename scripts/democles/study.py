@@ -8,15 +8,25 @@ import subprocess
 
 from democles import mpi
 
-PARTS = ("compute", "exchange", "wait", "regroup")  # of the loop's time; they do not overlap here: exchange is without wait
+PARTS = (
+    "compute",
+    "exchange",
+    "wait",
+    "regroup",
+)  # of the loop's time; they do not overlap here: exchange is without wait
 
 # Published speed-up and efficiency [%] of a reference solver, on the scenes that cases/ repeats (base: one processor).
 REFERENCE_SOURCE = "report on VEDO and Iris (National Taiwan University), tables of cases A and B, geometric and graph partitioning"
 REFERENCE = {
-    "v_funnel": {"geometric": {4: (3.76, 94.09), 8: (6.59, 82.33), 16: (9.16, 57.24)},
-                 "graph": {4: (3.77, 94.14), 8: (6.10, 76.24), 16: (7.66, 47.91)}},
-    "l_box": {"geometric": {4: (3.60, 90.09), 8: (6.24, 78.05), 16: (8.25, 51.55)},
-              "graph": {4: (3.39, 84.73), 8: (5.73, 71.61), 16: (6.76, 42.27)}}}
+    "v_funnel": {
+        "geometric": {4: (3.76, 94.09), 8: (6.59, 82.33), 16: (9.16, 57.24)},
+        "graph": {4: (3.77, 94.14), 8: (6.10, 76.24), 16: (7.66, 47.91)},
+    },
+    "l_box": {
+        "geometric": {4: (3.60, 90.09), 8: (6.24, 78.05), 16: (8.25, 51.55)},
+        "graph": {4: (3.39, 84.73), 8: (5.73, 71.61), 16: (6.76, 42.27)},
+    },
+}
 
 
 def cores():
@@ -40,7 +50,15 @@ def run(program, scene, folder, ranks, *args):
     command += ["--quiet", *args]
     if ranks > 1:
         command = mpi.command("-n", str(ranks), *command)
-    done = subprocess.run(command, env=env, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False)
+    done = subprocess.run(
+        command,
+        env=env,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+        check=False,
+    )
     return done.returncode, done.stderr
 
 
@@ -48,7 +66,11 @@ def take_up(results, folder):
     """Makes a new folder with the files from which a run resumes."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    for path in [*results.glob("*.yaml"), *results.glob("*.csv"), max(results.glob("frame_[0-9]*.hdf"))]:
+    for path in [
+        *results.glob("*.yaml"),
+        *results.glob("*.csv"),
+        max(results.glob("frame_[0-9]*.hdf")),
+    ]:
         shutil.copy(path, folder)
 
 
@@ -61,7 +83,9 @@ class Record:
             given = json.loads((path / "run.json" if path.is_dir() else path).read_text())
         self.raw = given
         self.ranks, self.elements = given["ranks"], given["elements"]
-        self.steps = given["steps"] - given.get("resumed", {}).get("step", 0)  # that the times are of
+        self.steps = given["steps"] - given.get("resumed", {}).get(
+            "step", 0
+        )  # that the times are of
         self.loop, self.digest = given["wall_s"]["loop"], given["digest"]
 
     def of(self, *keys, default=None):
@@ -82,7 +106,11 @@ class Record:
     def shares(self):
         """Of the loop's time [%], means over ranks."""
         loop = self.raw["timers"]["loop"]["mean"]
-        return [100 * self.per_step(part) * self.steps / loop for part in PARTS] if loop > 0 else [0.0] * len(PARTS)
+        return (
+            [100 * self.per_step(part) * self.steps / loop for part in PARTS]
+            if loop > 0
+            else [0.0] * len(PARTS)
+        )
 
     def imbalance(self):
         """U, mean over the run."""
@@ -95,12 +123,24 @@ class Record:
 
 def write_table(path, titles, rows, notes=()):
     """path.md and path.csv; prints the former. Cells: text, numbers, or None for what is not known."""
+
     def shown(cell):
-        return "" if cell is None else cell if isinstance(cell, str) else f"{cell:.4g}" if isinstance(cell, float) else str(cell)
+        return (
+            ""
+            if cell is None
+            else cell
+            if isinstance(cell, str)
+            else f"{cell:.4g}"
+            if isinstance(cell, float)
+            else str(cell)
+        )
+
     lines = ["| " + " | ".join(titles) + " |", "|" + "---|" * len(titles)]
     lines += ["| " + " | ".join(map(shown, row)) + " |" for row in rows]
     text = "\n".join(lines + [""] + list(notes)) + "\n"
     path.with_suffix(".md").write_text(text)
     with open(path.with_suffix(".csv"), "w", newline="") as file:
-        csv.writer(file).writerows([titles, *([None if c is None else c for c in row] for row in rows)])
+        csv.writer(file).writerows(
+            [titles, *([None if c is None else c for c in row] for row in rows)]
+        )
     print(text, end="")

@@ -23,7 +23,11 @@ class State:
         self.folder = pathlib.Path(folder)
         last = frames.Frame(frames.paths(folder)[-1])
         order = numpy.argsort(last.field("id"))
-        self.x, self.v, self.radius = last.points[order], last.field("velocity")[order], last.field("radius")[order]
+        self.x, self.v, self.radius = (
+            last.points[order],
+            last.field("velocity")[order],
+            last.field("radius")[order],
+        )
         self.w = last.field("angular_velocity")[order]
 
     def series(self, name):
@@ -46,10 +50,21 @@ class Case(unittest.TestCase):
         return name
 
     def run_scene(self, scene, out="out"):
-        scene = {"method": "particles", "output": {"fields": ["velocity", "angular_velocity", "radius", "id"]}, **scene}
+        scene = {
+            "method": "particles",
+            "output": {"fields": ["velocity", "angular_velocity", "radius", "id"]},
+            **scene,
+        }
         (self.dir / "scene.yaml").write_text(json.dumps(scene, indent=1))
-        done = subprocess.run([DEMOCLES, "run", "scene.yaml", "-o", out, "--force", "--quiet"], cwd=self.dir, stdin=subprocess.DEVNULL,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+        done = subprocess.run(
+            [DEMOCLES, "run", "scene.yaml", "-o", out, "--force", "--quiet"],
+            cwd=self.dir,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            check=False,
+        )
         self.assertEqual(done.returncode, 0, done.stdout)
         return State(self.dir / out)
 

@@ -11,7 +11,9 @@ def main():
     democles, scene, check, *more = sys.argv[1:]
     folder = pathlib.Path(tempfile.mkdtemp(prefix="democles_case_"))
     try:
-        code = subprocess.run([democles, "run", scene, "-o", folder / "out", "--quiet", *more], check=False).returncode
+        code = subprocess.run(
+            [democles, "run", scene, "-o", folder / "out", "--quiet", *more], check=False
+        ).returncode
         if code:
             sys.exit(f"democles run {scene}: exit code {code}")
         sys.exit(subprocess.run([check, folder / "out"], check=False).returncode)

@@ -24,17 +24,38 @@ import tempfile
 
 import numpy
 
-YOUNG, NU, DENSITY = 210e9, 0.3, 7900                     # [Pa], [1], [kg/m3]
-T, SIDE, FORCE = 0.02, 6, 1e3                             # thickness [m], side [T], force downwards [N]
-CLAMP = numpy.array([[5.5, 1.5, 0], [SIDE, 4.5, 1]]) * T  # lowest and highest corner of what is held [m]
-LAYERS = (3, 5, 9)                                        # cells through the thickness
-IN_PLANE, ACROSS = 5, 2                                   # how often elements are halved towards the clamp's edges
-POWER = 2 * 0.595                                         # of the error in the size of cells, see above
-BOUND, ORDER, LIMIT = 0.02, 1, 0.005                      # largest error of the finest lattice, lowest order, largest error of the limit
+YOUNG, NU, DENSITY = 210e9, 0.3, 7900  # [Pa], [1], [kg/m3]
+T, SIDE, FORCE = 0.02, 6, 1e3  # thickness [m], side [T], force downwards [N]
+CLAMP = (
+    numpy.array([[5.5, 1.5, 0], [SIDE, 4.5, 1]]) * T
+)  # lowest and highest corner of what is held [m]
+LAYERS = (3, 5, 9)  # cells through the thickness
+IN_PLANE, ACROSS = 5, 2  # how often elements are halved towards the clamp's edges
+POWER = 2 * 0.595  # of the error in the size of cells, see above
+BOUND, ORDER, LIMIT = (
+    0.02,
+    1,
+    0.005,
+)  # largest error of the finest lattice, lowest order, largest error of the limit
 
 # Nodes of a brick in half edges: its corners, below and then above, and the middles of the edges between these.
-CORNERS = numpy.array([[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0], [0, 0, 2], [2, 0, 2], [2, 2, 2], [0, 2, 2]])
-EDGES = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
+CORNERS = numpy.array(
+    [[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0], [0, 0, 2], [2, 0, 2], [2, 2, 2], [0, 2, 2]]
+)
+EDGES = [
+    (0, 1),
+    (1, 2),
+    (2, 3),
+    (3, 0),
+    (4, 5),
+    (5, 6),
+    (6, 7),
+    (7, 4),
+    (0, 4),
+    (1, 5),
+    (2, 6),
+    (3, 7),
+]
 BRICK = numpy.vstack([CORNERS, [(CORNERS[a] + CORNERS[b]) // 2 for a, b in EDGES]])
 
 
@@ -42,13 +63,22 @@ def lines(length, edges, halved):
     """Planes [m] between elements along one axis, from 0 to length [T]: every T/2, and at T/2, T/4, ... from these edges [T]."""
     unit = 2**halved
     at = set(range(0, length * unit + 1, unit // 2))
-    at.update(round(edge * unit) + sign * (unit >> k) for edge in edges for k in range(1, halved + 1) for sign in (-1, 1))
+    at.update(
+        round(edge * unit) + sign * (unit >> k)
+        for edge in edges
+        for k in range(1, halved + 1)
+        for sign in (-1, 1)
+    )
     return numpy.array(sorted(x for x in at if 0 <= x <= length * unit)) * T / unit
 
 
 def mesh():
     """Nodes [n][3] [m], elements [n][20] as numbers of nodes from 1, middles of the elements [n][3] [m]."""
-    planes = [lines(SIDE, [5.5], IN_PLANE), lines(SIDE, [1.5, 4.5], IN_PLANE), lines(1, [0, 1], ACROSS)]
+    planes = [
+        lines(SIDE, [5.5], IN_PLANE),
+        lines(SIDE, [1.5, 4.5], IN_PLANE),
+        lines(1, [0, 1], ACROSS),
+    ]
     fine = [numpy.sort(numpy.concatenate([x, (x[1:] + x[:-1]) / 2])) for x in planes]
     place = numpy.indices([len(x) for x in fine]).reshape(3, -1).T
     place = place[(place % 2).sum(axis=1) <= 1]  # no node in the middle of a face or of an element
@@ -56,7 +86,10 @@ def mesh():
     number[tuple(place.T)] = numpy.arange(1, len(place) + 1)
     first = 2 * numpy.indices([len(x) - 1 for x in planes]).reshape(3, -1).T
     elements = number[tuple(numpy.moveaxis(first[:, None] + BRICK, 2, 0))]
-    nodes, middles = (numpy.stack([fine[a][where[:, a]] for a in range(3)], axis=1) for where in (place, first + 1))
+    nodes, middles = (
+        numpy.stack([fine[a][where[:, a]] for a in range(3)], axis=1)
+        for where in (place, first + 1)
+    )
     return nodes, elements, middles
 
 
@@ -65,23 +98,55 @@ def finite_elements(folder):
     nodes, elements, middles = mesh()
     held = numpy.all((nodes > CLAMP[0] - 1e-6 * T) & (nodes < CLAMP[1] + 1e-6 * T), axis=1)
     corner = 1 + numpy.abs(nodes - [0, 0, T / 2]).sum(axis=1).argmin()
-    text = ["*NODE"] + ["%d, %.12g, %.12g, %.12g" % (k, *x) for k, x in enumerate(nodes, 1)] + ["*ELEMENT, TYPE=C3D20R, ELSET=PLATE"]
+    text = (
+        ["*NODE"]
+        + ["%d, %.12g, %.12g, %.12g" % (k, *x) for k, x in enumerate(nodes, 1)]
+        + ["*ELEMENT, TYPE=C3D20R, ELSET=PLATE"]
+    )
     for k, element in enumerate(elements, 1):
         text += [", ".join(map(str, [k, *element[:10]])) + ",", ", ".join(map(str, element[10:]))]
-    text += ["*NSET, NSET=HELD"] + [str(k) for k in numpy.flatnonzero(held) + 1] + ["*NSET, NSET=CORNER", str(corner), "*ELSET, ELSET=LOADED"]
+    text += (
+        ["*NSET, NSET=HELD"]
+        + [str(k) for k in numpy.flatnonzero(held) + 1]
+        + ["*NSET, NSET=CORNER", str(corner), "*ELSET, ELSET=LOADED"]
+    )
     text += [str(k) for k in numpy.flatnonzero(numpy.all(middles < T, axis=1)) + 1]
     # The weight of the loaded volume under this acceleration is the force.
-    text += ["*MATERIAL, NAME=STEEL", "*ELASTIC", f"{YOUNG}, {NU}", "*DENSITY", f"{DENSITY}", "*SOLID SECTION, ELSET=PLATE, MATERIAL=STEEL",
-             "*BOUNDARY", "HELD, 1, 3", "*STEP", "*STATIC", "*DLOAD", f"LOADED, GRAV, {FORCE / (DENSITY * T**3)!r}, 0, 0, -1",
-             "*NODE PRINT, NSET=CORNER", "U", "*NODE PRINT, NSET=HELD, TOTALS=ONLY", "RF", "*END STEP"]
+    text += [
+        "*MATERIAL, NAME=STEEL",
+        "*ELASTIC",
+        f"{YOUNG}, {NU}",
+        "*DENSITY",
+        f"{DENSITY}",
+        "*SOLID SECTION, ELSET=PLATE, MATERIAL=STEEL",
+        "*BOUNDARY",
+        "HELD, 1, 3",
+        "*STEP",
+        "*STATIC",
+        "*DLOAD",
+        f"LOADED, GRAV, {FORCE / (DENSITY * T**3)!r}, 0, 0, -1",
+        "*NODE PRINT, NSET=CORNER",
+        "U",
+        "*NODE PRINT, NSET=HELD, TOTALS=ONLY",
+        "RF",
+        "*END STEP",
+    ]
     (folder / "plate.inp").write_text("\n".join(text) + "\n")
     run(folder, "ccx", "plate")
     # Two tables of numbers: the corner's node and displacement, then the total reaction, which shows that the load is the one meant.
-    numbers = [[float(word) for word in line.split()] for line in (folder / "plate.dat").read_text().splitlines() if is_numbers(line)]
+    numbers = [
+        [float(word) for word in line.split()]
+        for line in (folder / "plate.dat").read_text().splitlines()
+        if is_numbers(line)
+    ]
     (node, *displacement), reaction = numbers
     if node != corner or not numpy.allclose(reaction, [0, 0, FORCE], atol=1e-3 * FORCE):
-        sys.exit(f"ccx: displacement of node {node:g} instead of {corner}, or reaction {reaction} N instead of {FORCE:g} N")
-    print(f"{len(elements)} finite elements, {len(nodes)} nodes: corner {displacement[2] * 1e6:.4f} um")
+        sys.exit(
+            f"ccx: displacement of node {node:g} instead of {corner}, or reaction {reaction} N instead of {FORCE:g} N"
+        )
+    print(
+        f"{len(elements)} finite elements, {len(nodes)} nodes: corner {displacement[2] * 1e6:.4f} um"
+    )
     return displacement[2]
 
 
@@ -96,27 +161,58 @@ def box(low, high):
 def lattice(folder, n, democles):
     """Deflection of the corner [m] with n cells through the thickness: linear from the centres of the three cells there."""
     h = T / n
-    near = {f"cell_{i}_{j}": [(i + 0.5) * h, (j + 0.5) * h, T / 2] for i, j in ((0, 0), (1, 0), (0, 1))}
+    near = {
+        f"cell_{i}_{j}": [(i + 0.5) * h, (j + 0.5) * h, T / 2] for i, j in ((0, 0), (1, 0), (0, 1))
+    }
     # Regions are larger than the clamp, and smaller than the loaded corner, by less than half a cell: none of its free faces bears the force.
     scene = {
-        "method": "lattice", "time": {"end": 1}, "lattice": {"rotation": "small", "relax": {"tolerance": 1e-7}},
+        "method": "lattice",
+        "time": {"end": 1},
+        "lattice": {"rotation": "small", "relax": {"tolerance": 1e-7}},
         "materials": {"steel": {"density": DENSITY, "young": YOUNG, "poisson": NU}},
-        "bodies": [{"name": "plate", "material": "steel", "cell": h, "shape": box([0, 0, 0], [SIDE * T, SIDE * T, T])}],
-        "boundaries": [{"where": box(CLAMP[0] - h / 4, CLAMP[1] + h / 4), "fix": ["x", "y", "z", "rx", "ry", "rz"]},
-                       {"where": box([h / 4] * 3, [T - h / 4] * 3), "force": [0, 0, -FORCE]}],
+        "bodies": [
+            {
+                "name": "plate",
+                "material": "steel",
+                "cell": h,
+                "shape": box([0, 0, 0], [SIDE * T, SIDE * T, T]),
+            }
+        ],
+        "boundaries": [
+            {
+                "where": box(CLAMP[0] - h / 4, CLAMP[1] + h / 4),
+                "fix": ["x", "y", "z", "rx", "ry", "rz"],
+            },
+            {"where": box([h / 4] * 3, [T - h / 4] * 3), "force": [0, 0, -FORCE]},
+        ],
         # Lines are written at multiples of their interval, not at rest: it is short, so that the last line is as good as at rest.
-        "measure": [{"name": name, "every": 1e-5, "probe": {"at": at, "fields": ["displacement"]}} for name, at in near.items()]}
+        "measure": [
+            {"name": name, "every": 1e-5, "probe": {"at": at, "fields": ["displacement"]}}
+            for name, at in near.items()
+        ],
+    }
     (folder / "scene.yaml").write_text(json.dumps(scene, indent=1))
     run(folder, democles, "run", "scene.yaml", "-o", "out", "--force", "--quiet")
     record = json.loads((folder / "out" / "run.json").read_text())
-    if record["elements"] != n * (SIDE * n)**2 or not record["rest"]["reached"]:
+    if record["elements"] != n * (SIDE * n) ** 2 or not record["rest"]["reached"]:
         sys.exit(f"{n} layers: {record['elements']} cells, rest {record['rest']}")
-    at, *beside = (numpy.genfromtxt(folder / "out" / f"{name}.csv", delimiter=",", names=True)["u_z_m"][-1] for name in near)
+    at, *beside = (
+        numpy.genfromtxt(folder / "out" / f"{name}.csv", delimiter=",", names=True)["u_z_m"][-1]
+        for name in near
+    )
     return at + sum((at - there) / 2 for there in beside)
 
 
 def run(folder, *command):
-    done = subprocess.run(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+    done = subprocess.run(
+        command,
+        cwd=folder,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        check=False,
+    )
     if done.returncode:
         sys.exit(f"{' '.join(command)}: exit code {done.returncode}\n{done.stdout}")
 
@@ -138,10 +234,14 @@ def main():
             text += f", order {orders[-1]:.2f}"
         print(text)
     # A wrong elastic constant can hide in the error of the finest lattice, not in where the two finest lead.
-    limit = found[-1] + (found[-1] - found[-2]) / ((LAYERS[-1] / LAYERS[-2])**POWER - 1)
-    print(f"limit of the last two with h^{POWER:g}: {limit * 1e6:.4f} um, error {100 * (limit / right - 1):.3f} %")
+    limit = found[-1] + (found[-1] - found[-2]) / ((LAYERS[-1] / LAYERS[-2]) ** POWER - 1)
+    print(
+        f"limit of the last two with h^{POWER:g}: {limit * 1e6:.4f} um, error {100 * (limit / right - 1):.3f} %"
+    )
     if abs(errors[-1]) > BOUND or min(orders) < ORDER or abs(limit / right - 1) > LIMIT:
-        sys.exit(f"WRONG: last error at most {100 * BOUND:g} %, orders at least {ORDER}, error of the limit at most {100 * LIMIT:g} %")
+        sys.exit(
+            f"WRONG: last error at most {100 * BOUND:g} %, orders at least {ORDER}, error of the limit at most {100 * LIMIT:g} %"
+        )
 
 
 if __name__ == "__main__":

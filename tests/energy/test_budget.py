@@ -53,15 +53,28 @@ measure:
   - {{name: energy, every: 2e-4 s, energy: all}}
 """
 FRICTION = "tangential: {stiffness_ratio: 0.8, friction: 0.3, damping_ratio: 0.2}"
-ALL = FRICTION + "\n    rolling: {model: epsd, friction: 0.05, damping_ratio: 0.3}\n    binding: {force: 0.2}"
+ALL = (
+    FRICTION
+    + "\n    rolling: {model: epsd, friction: 0.05, damping_ratio: 0.3}\n    binding: {force: 0.2}"
+)
 LOSSES = ["dashpot_normal", "dashpot_tangential", "sliding", "rolling", "bonds"]
 
 
 class Budget(cli.Case):
     def budget(self, ranks, **keys):
         """Columns by name, the same for all numbers of ranks."""
-        keys = {"dt": 2e-5, "end": 0.06, "every": 0.002, "law": FRICTION, "gravity": "[0, 0, -9.81]", "n": 20, "domain": "{}",
-                "region": "{min: [0, 0, 0.005], max: [0.04, 0.04, 0.2]}", "scene": SCENE, **keys}
+        keys = {
+            "dt": 2e-5,
+            "end": 0.06,
+            "every": 0.002,
+            "law": FRICTION,
+            "gravity": "[0, 0, -9.81]",
+            "n": 20,
+            "domain": "{}",
+            "region": "{min: [0, 0, 0.005], max: [0.04, 0.04, 0.2]}",
+            "scene": SCENE,
+            **keys,
+        }
         self.put("scene.yaml", keys["scene"].format(**keys))
         texts = []
         for n in ranks:
@@ -71,7 +84,9 @@ class Budget(cli.Case):
                 texts.append(file.read())
         self.assertEqual(len(set(texts)), 1, "not the same on all numbers of ranks")
         rows = list(csv.reader(texts[0].splitlines()))
-        return {name.split()[0]: [float(row[k]) for row in rows[1:]] for k, name in enumerate(rows[0])}
+        return {
+            name.split()[0]: [float(row[k]) for row in rows[1:]] for k, name in enumerate(rows[0])
+        }
 
     def closes(self, e, part):
         """The balance, relative to all energy that came, went or was there."""
@@ -81,10 +96,14 @@ class Budget(cli.Case):
 
     def test_moving_wall(self):
         """A floor that tilts to and fro under balls which stick, slip and roll: every term of the account takes part."""
-        e = self.budget([1, 3], law=ALL, walls="""
+        e = self.budget(
+            [1, 3],
+            law=ALL,
+            walls="""
   - {name: room, material: wall, surface: {box: {min: [0, 0, 0], max: [0.04, 0.04, 0.3]}}}
   - {name: floor, material: wall, surface: {plane: {point: [0, 0, 0.005], normal: [0.1, 0, 1]}},
-     motion: {oscillation: {amplitude: [0.002, 0, 0.01], frequency: 30 Hz}}}""")
+     motion: {oscillation: {amplitude: [0.002, 0, 0.01], frequency: 30 Hz}}}""",
+        )
         self.closes(e, 3e-3)
         self.assertGreater(e["wall_work"][-1], 0.01)
         for name in LOSSES:
@@ -110,10 +129,15 @@ class Budget(cli.Case):
     def test_elements_and_walls_that_leave(self):
         """A gate opens under a packing; what falls out of the domain takes its energy with it."""
         box = "{min: [-0.1, -0.1, -0.05], max: [0.14, 0.14, 0.4]}"
-        e = self.budget([1, 2], end=0.2, domain="{remove_outside: true, box: " + box + "}", walls="""
+        e = self.budget(
+            [1, 2],
+            end=0.2,
+            domain="{remove_outside: true, box: " + box + "}",
+            walls="""
   - {name: pipe, material: wall, surface: {cylinder: {from: [0.02, 0.02, -0.1], to: [0.02, 0.02, 0.4], radius: 0.03, inside: true}}}
   - {name: gate, material: wall, surface: {rectangle: {center: [0.02, 0.02, 0], normal: [0, 0, 1], size: [0.1, 0.1]}},
-     motion: {remove_at: 0.05 s}}""")
+     motion: {remove_at: 0.05 s}}""",
+        )
         self.closes(e, 1e-3)
         self.assertEqual(e["kinetic"][-1], 0)
         self.assertEqual(e["gravity"][-1], 0)
@@ -122,18 +146,44 @@ class Budget(cli.Case):
     def test_round_and_round(self):
         """A period along a slope: gravity goes on giving."""
         box = "{min: [0, 0, -0.01], max: [0.04, 0.04, 0.3]}"
-        e = self.budget([1, 2], gravity="[6, 0, -7.5]", end=0.2, domain="{periodic: [x, y], box: " + box + "}", walls="""
-  - {name: slope, material: wall, surface: {plane: {point: [0, 0, 0], normal: [0, 0, 1]}}}""")
+        e = self.budget(
+            [1, 2],
+            gravity="[6, 0, -7.5]",
+            end=0.2,
+            domain="{periodic: [x, y], box: " + box + "}",
+            walls="""
+  - {name: slope, material: wall, surface: {plane: {point: [0, 0, 0], normal: [0, 0, 1]}}}""",
+        )
         self.closes(e, 3e-3)
         mass = 20 * 2500 * 3.14159265 / 6 * 1e-6
-        self.assertGreater(e["gravity"][0] - e["gravity"][-1], mass * (6 * 0.08 + 7.5 * 0.01))  # further than two periods
+        self.assertGreater(
+            e["gravity"][0] - e["gravity"][-1], mass * (6 * 0.08 + 7.5 * 0.01)
+        )  # further than two periods
 
     def test_lattice(self):
         """A bar that is shaken at its base, pulled, pressed, pushed and damped: the balance closes at second order, and is that of the record."""
-        coarse, fine = (self.budget([1, 3] if dt == 1e-6 else [1], scene=LATTICE, dt=dt, scheme="leapfrog") for dt in (2e-6, 1e-6))
-        self.assertEqual(list(fine),
-                         ["time", "kinetic", "rotational", "gravity", "elastic", "link_damping", "mass_damping", "released", "work", "balance"])
-        work, off = max(map(abs, fine["work"])), [max(map(abs, e["balance"])) for e in (coarse, fine)]
+        coarse, fine = (
+            self.budget([1, 3] if dt == 1e-6 else [1], scene=LATTICE, dt=dt, scheme="leapfrog")
+            for dt in (2e-6, 1e-6)
+        )
+        self.assertEqual(
+            list(fine),
+            [
+                "time",
+                "kinetic",
+                "rotational",
+                "gravity",
+                "elastic",
+                "link_damping",
+                "mass_damping",
+                "released",
+                "work",
+                "balance",
+            ],
+        )
+        work, off = max(map(abs, fine["work"])), [
+            max(map(abs, e["balance"])) for e in (coarse, fine)
+        ]
         self.assertGreater(off[0] / off[1], 3.5)
         self.assertLess(off[0] / off[1], 4.5)
         self.assertLess(off[1], 1e-3 * work)

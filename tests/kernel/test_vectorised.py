@@ -17,7 +17,11 @@ CASES = [
     ("pair_force", "single", EQUAL + ["binding"]),
     ("pair_force", "mixed", EQUAL + ["cdt"]),
     ("pair_force", "double", EQUAL + ["materials"]),
-    ("pair_force", "double", ["spin", "hertz", "tangential", "damping", "epsd", "binding", "sizes"]),
+    (
+        "pair_force",
+        "double",
+        ["spin", "hertz", "tangential", "damping", "epsd", "binding", "sizes"],
+    ),
     ("wall_force", "double", EQUAL + ["plane"]),
     ("lattice", "double", ["small"]),
     ("lattice", "single", ["small"]),
@@ -39,7 +43,11 @@ SOME = [CASES[1], CASES[5], CASES[8], CASES[14], CASES[15]]
 def vector_bytes():
     """Of what LLVM prefers on this machine: 32 with AVX (also AVX-512), else 16."""
     try:
-        return 32 if re.search(r"^flags.*\bavx\b", pathlib.Path("/proc/cpuinfo").read_text(), re.M) else 16
+        return (
+            32
+            if re.search(r"^flags.*\bavx\b", pathlib.Path("/proc/cpuinfo").read_text(), re.M)
+            else 16
+        )
     except OSError:
         return 16
 
@@ -48,7 +56,9 @@ def remarks(kernel, precision, features):
     with tempfile.TemporaryDirectory() as cache:
         environment = dict(os.environ, POCL_VECTORIZER_REMARKS="1", POCL_CACHE_DIR=cache)
         program = sys.argv[2 if kernel == "lattice" else 1]
-        done = subprocess.run([program, kernel, precision, *features], env=environment, capture_output=True, text=True)
+        done = subprocess.run(
+            [program, kernel, precision, *features], env=environment, capture_output=True, text=True
+        )
     if done.returncode == 77:
         print(done.stdout.strip() + ": not pocl, or no doubles")
         sys.exit(77)
@@ -68,5 +78,7 @@ for kernel, precision, features in CASES if sys.argv[3] == "all" else SOME:
     wanted = vector_bytes() // (4 if precision == "single" else 8)
     good = sum(w >= wanted for w in widths) >= 1 + (kernel == "lattice" and "volume" in features)
     failed += not good
-    print(f"{'ok    ' if good else 'FAILED'} {kernel} {precision} {' '.join(features)}: widths {widths}, wanted {wanted}")
+    print(
+        f"{'ok    ' if good else 'FAILED'} {kernel} {precision} {' '.join(features)}: widths {widths}, wanted {wanted}"
+    )
 sys.exit(1 if failed else 0)

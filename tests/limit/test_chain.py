@@ -12,7 +12,9 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."
 import cli  # noqa: E402
 
 N, K, R, DENSITY = 40, 1e3, 2.5e-3, 2200
-TRUE = 1 / (math.sqrt(K / (DENSITY * 4 / 3 * math.pi * R**3)) * math.sin((N - 1) * math.pi / (2 * N)))
+TRUE = 1 / (
+    math.sqrt(K / (DENSITY * 4 / 3 * math.pi * R**3)) * math.sin((N - 1) * math.pi / (2 * N))
+)
 SCENE = """method: particles
 time: {{end: {end:.9e} s, step: {dt:.9e} s, allow_unstable: {allow}}}
 gravity: [0, 0, 0]
@@ -56,13 +58,18 @@ class Chain(cli.Case):
         done = self.chain(1.05 * TRUE, 30, True)
         energy = self.kinetic()
         self.assertEqual(done.code, 0, done.err)
-        self.assertGreater(energy[-1], 1e8 * energy[0])  # each step multiplies the amplitude by (1.05 + (1.05^2 - 1)^(1/2))^2 = 1.87
+        self.assertGreater(
+            energy[-1], 1e8 * energy[0]
+        )  # each step multiplies the amplitude by (1.05 + (1.05^2 - 1)^(1/2))^2 = 1.87
 
     def test_refused(self):
         done = self.chain(1.05 * TRUE, 30, False)
         self.assertEqual(done.code, 5, done.err)
         text = "\n".join(done.err)
-        found = re.search(r"time step ([\d.e-]+) s exceeds the critical time step ([\d.e-]+) s, set by the contacts of element (\d+)", text)
+        found = re.search(
+            r"time step ([\d.e-]+) s exceeds the critical time step ([\d.e-]+) s, set by the contacts of element (\d+)",
+            text,
+        )
         self.assertTrue(found, text)
         self.assertAlmostEqual(float(found[1]) / TRUE, 1.05, 3)
         self.assertAlmostEqual(float(found[2]) / TRUE, math.sin((N - 1) * math.pi / (2 * N)), 3)

@@ -20,7 +20,9 @@ FRAME = "frame_000007.hdf"
 
 def tool(n_rank, *args):
     """Runs results_tool on n_rank ranks (one: without mpirun); no result within a minute is a hang."""
-    command = [TOOL, *args] if n_rank == 1 else [MPIRUN, *MPIRUN_ARGS, "-n", str(n_rank), TOOL, *args]
+    command = (
+        [TOOL, *args] if n_rank == 1 else [MPIRUN, *MPIRUN_ARGS, "-n", str(n_rank), TOOL, *args]
+    )
     return subprocess.run(command, capture_output=True, text=True, timeout=60)
 
 
@@ -51,6 +53,7 @@ class Frames(Folder):
     def test_vtk_reads_every_part(self):
         from vtkmodules.util.numpy_support import vtk_to_numpy
         from vtkmodules.vtkIOHDF import vtkHDFReader
+
         for n_rank in (1, 2, 3):  # the second rank has no elements
             self.assertEqual(tool(n_rank, "frame", self.dir).returncode, 0)
             reader = vtkHDFReader()
@@ -60,8 +63,10 @@ class Frames(Folder):
             grid = reader.GetOutput()
             n = sum(0 if r == 1 else 3 + 2 * r for r in range(n_rank))
             self.assertEqual((grid.GetNumberOfPoints(), grid.GetNumberOfCells()), (n, n))
-            data = {grid.GetPointData().GetArrayName(k): vtk_to_numpy(grid.GetPointData().GetArray(k))
-                    for k in range(grid.GetPointData().GetNumberOfArrays())}
+            data = {
+                grid.GetPointData().GetArrayName(k): vtk_to_numpy(grid.GetPointData().GetArray(k))
+                for k in range(grid.GetPointData().GetNumberOfArrays())
+            }
             self.assertEqual(sorted(data), ["coordination", "id", "radius", "velocity"])
             x = vtk_to_numpy(grid.GetPoints().GetData())
             for i in range(n):
@@ -93,11 +98,17 @@ class Frames(Folder):
             whole = file.read()
         self.assertEqual(self.damaged(whole), "")
         number = struct.pack("<d", 0.001 * 2 + 0.1 + 1.0 / 3.0)
-        for what, says in ((number, "VTKHDF/Points: its checksum"), (b"title: a scene", "democles/resolved: its checksum"),
-                           (b"contacts of the", "VTKHDF/PointData/coordination")):
+        for what, says in (
+            (number, "VTKHDF/Points: its checksum"),
+            (b"title: a scene", "democles/resolved: its checksum"),
+            (b"contacts of the", "VTKHDF/PointData/coordination"),
+        ):
             at = whole.index(what)
             for bit in (0, 7):
-                self.assertIn(says, self.damaged(whole[:at] + bytes([whole[at] ^ (1 << bit)]) + whole[at + 1:]))
+                self.assertIn(
+                    says,
+                    self.damaged(whole[:at] + bytes([whole[at] ^ (1 << bit)]) + whole[at + 1 :]),
+                )
         for length in (0, 1, 47, len(whole) // 2, len(whole) - 1):
             self.assertNotEqual(self.damaged(whole[:length]), "")
         self.assertEqual(tool(1, "write", self.path("numbers.hdf"), "0").returncode, 0)
@@ -123,9 +134,13 @@ class Frames(Folder):
     def test_full_disk(self):
         small = self.path("small")
         os.mkdir(small)
-        mount = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", small], capture_output=True)
+        mount = subprocess.run(
+            ["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", small], capture_output=True
+        )
         if mount.returncode:
-            self.skipTest("may not mount a small disk here; the limits on file sizes above stand for it")
+            self.skipTest(
+                "may not mount a small disk here; the limits on file sizes above stand for it"
+            )
         try:
             run = tool(2, "frame", small)
             self.assertEqual(run.returncode, 6)
@@ -164,15 +179,34 @@ class Folders(Folder):
             shutil.rmtree(self.path("out"))
 
     def test_force_removes_ours_and_nothing_else(self):
-        ours = ["frame_000000.hdf", "frame_000123.hdf", "frame_000124.hdf.tmp", "run.json", "log.txt", "stop", "outflow.csv", "energy.csv"]
-        others = ["frame.hdf", "frame_000000.png", "notes.txt", "analysis.csv", "sub/frame_000000.hdf"]
+        ours = [
+            "frame_000000.hdf",
+            "frame_000123.hdf",
+            "frame_000124.hdf.tmp",
+            "run.json",
+            "log.txt",
+            "stop",
+            "outflow.csv",
+            "energy.csv",
+        ]
+        others = [
+            "frame.hdf",
+            "frame_000000.png",
+            "notes.txt",
+            "analysis.csv",
+            "sub/frame_000000.hdf",
+        ]
         for name in ours + others:
             self.put("out/" + name, "old")
         self.put("out/scene.yaml", "title: old\n")
         self.put("out/resolved.yaml", "measure:\n  - {name: energy}\n  - {name: ../case/secret}\n")
         self.put("case/secret.csv", "mine")
         self.assertEqual(tool(2, "folder", self.path("out"), self.scene, "--force").returncode, 0)
-        found = sorted(os.path.relpath(os.path.join(at, name), self.path("out")) for at, _, names in os.walk(self.path("out")) for name in names)
+        found = sorted(
+            os.path.relpath(os.path.join(at, name), self.path("out"))
+            for at, _, names in os.walk(self.path("out"))
+            for name in names
+        )
         self.assertEqual(found, sorted(others + ["scene.yaml", "resolved.yaml"]))
         self.assertEqual(self.get("out/scene.yaml"), "title: given\n")
         self.assertEqual(self.get("case/secret.csv"), "mine")
@@ -194,7 +228,9 @@ class Folders(Folder):
         run = tool(2, "folder", self.path("data"), self.scene)
         self.assertEqual((run.returncode, len(errors(run))), (2, 1), run.stderr)
         self.assertIn("holds a file outflow.csv, the name of a measure; --force", errors(run)[0])
-        self.assertEqual((os.listdir(self.path("data")), self.get("data/outflow.csv")), (["outflow.csv"], "mine"))
+        self.assertEqual(
+            (os.listdir(self.path("data")), self.get("data/outflow.csv")), (["outflow.csv"], "mine")
+        )
 
     def test_run_killed_before_its_first_frame_is_no_result(self):
         self.put("out/scene.yaml", "title: old\n")
@@ -216,7 +252,7 @@ class Record(Folder):
         run = tool(3, "record", self.dir)
         self.assertEqual(run.returncode, 0, run.stderr)
         record = json.loads(self.get("run.json"))
-        self.assertEqual(record["title"], "a \"quoted\" \\ path\nµ\t\x01")
+        self.assertEqual(record["title"], 'a "quoted" \\ path\nµ\t\x01')
         self.assertEqual(record["large"], 9007199254740993)
         self.assertEqual(record["third"], 1.0 / 3.0)
         self.assertEqual((record["not_a_number"], record["nothing"]), (None, None))
@@ -234,22 +270,36 @@ class Record(Folder):
             rows = list(csv.reader(file))
         self.assertEqual(rows[0], ["time [s]", "below [1]", "a, b [J]"])
         values = [[float(v) for v in row] for row in rows[1:]]
-        self.assertEqual([row[2] for row in values], [1.0 / 3.0, 5e-324, 1e23, 0.1, -0.0, 1.7976931348623157e308])
+        self.assertEqual(
+            [row[2] for row in values], [1.0 / 3.0, 5e-324, 1e23, 0.1, -0.0, 1.7976931348623157e308]
+        )
         self.assertEqual([row[0] for row in values], [1e-3 * k for k in range(6)])
 
     def test_log_holds_what_was_printed(self):
-        run = tool(2, "record", self.dir)  # mpirun gives ranks a terminal of their own: it must not be taken for one
+        run = tool(
+            2, "record", self.dir
+        )  # mpirun gives ranks a terminal of their own: it must not be taken for one
         self.assertEqual(run.stdout, self.get("log.txt"))
         lines = run.stdout.splitlines()
         self.assertEqual(lines[:2], ["before the folder", "17 elements"])
-        self.assertEqual([line.split("(")[1].split(" %")[0] for line in lines[2:]], ["10", "20", "30", "40", "50", "60", "70", "80", "90", "100"])
+        self.assertEqual(
+            [line.split("(")[1].split(" %")[0] for line in lines[2:]],
+            ["10", "20", "30", "40", "50", "60", "70", "80", "90", "100"],
+        )
         self.assertRegex(lines[-1], r"\Astep 1000 of 1000 \(100 %\)  t = \S+ of 0.01 s\Z")
         self.assertRegex(lines[-2], r" million element updates/s  \S+ s left\Z")
 
     def test_terminal_gets_one_line(self):
         """On a terminal the progress line is rewritten: wiped before other output, never scrolled."""
-        for command in ([TOOL, "record", self.dir], [MPIRUN, *MPIRUN_ARGS, "-n", "2", TOOL, "record", self.dir]):
-            run = subprocess.run(["script", "-qec", shlex.join(command), "/dev/null"], capture_output=True, timeout=60)
+        for command in (
+            [TOOL, "record", self.dir],
+            [MPIRUN, *MPIRUN_ARGS, "-n", "2", TOOL, "record", self.dir],
+        ):
+            run = subprocess.run(
+                ["script", "-qec", shlex.join(command), "/dev/null"],
+                capture_output=True,
+                timeout=60,
+            )
             self.assertEqual(run.returncode, 0)
             self.assertEqual(run.stdout.replace(b"\r\n", b"\n").count(b"\n"), 3, run.stdout)
             self.assertGreater(run.stdout.count(b"\rstep"), 5)

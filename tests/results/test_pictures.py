@@ -14,7 +14,19 @@ import unittest
 SCRIPTS = pathlib.Path(__file__).resolve().parent.parent.parent / "scripts"
 TOOL = sys.argv.pop(1)
 if not os.environ.get("DISPLAY"):
-    os.execvp("xvfb-run", ["xvfb-run", "-a", "-s", "-screen 0 1280x1024x24", sys.executable, *sys.argv[:1], TOOL, *sys.argv[1:]])
+    os.execvp(
+        "xvfb-run",
+        [
+            "xvfb-run",
+            "-a",
+            "-s",
+            "-screen 0 1280x1024x24",
+            sys.executable,
+            *sys.argv[:1],
+            TOOL,
+            *sys.argv[1:],
+        ],
+    )
 
 sys.path.insert(0, str(SCRIPTS))
 import numpy  # noqa: E402
@@ -34,8 +46,14 @@ class Walls(unittest.TestCase):
     """Geometry alone."""
 
     def test_rectangle_axes(self):
-        for normal, u, v in (((1, 0, 0), (0, 1, 0), (0, 0, 1)), ((-1, 0, 0), (0, 1, 0), (0, 0, 1)), ((0, 1, 0), (1, 0, 0), (0, 0, 1)),
-                             ((0, -1, 0), (1, 0, 0), (0, 0, 1)), ((0, 0, 1), (1, 0, 0), (0, 1, 0)), ((0, 0, -1), (1, 0, 0), (0, 1, 0))):
+        for normal, u, v in (
+            ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
+            ((-1, 0, 0), (0, 1, 0), (0, 0, 1)),
+            ((0, 1, 0), (1, 0, 0), (0, 0, 1)),
+            ((0, -1, 0), (1, 0, 0), (0, 0, 1)),
+            ((0, 0, 1), (1, 0, 0), (0, 1, 0)),
+            ((0, 0, -1), (1, 0, 0), (0, 1, 0)),
+        ):
             found = render_walls.rectangle_axes(numpy.array(normal, float))
             numpy.testing.assert_allclose(found, (u, v), atol=1e-15)
 
@@ -46,13 +64,22 @@ class Walls(unittest.TestCase):
         slope = render_walls.plane({"point": [1, 1.5, 2], "normal": [-2, 0, 1]}, low, high)
         corners = numpy.array([slope.GetPoint(k) for k in range(slope.GetNumberOfPoints())])
         numpy.testing.assert_allclose(corners[:, 2], 2 * corners[:, 0], atol=1e-12)
-        numpy.testing.assert_allclose((corners.min(axis=0), corners.max(axis=0)), (low, high), atol=1e-12)
+        numpy.testing.assert_allclose(
+            (corners.min(axis=0), corners.max(axis=0)), (low, high), atol=1e-12
+        )
         self.assertIsNone(render_walls.plane({"point": [0, 0, 5], "normal": [0, 0, 1]}, low, high))
 
     def test_pose(self):
-        wall = {"motion": {"velocity": [1, 0, 0], "rotation": {"center": [1, 0, 0], "axis": [0, 0, 3], "rate": math.pi / 4},
-                           "oscillation": {"amplitude": [0, 0, 0.5], "frequency": 0.125}}}
-        rotation, translation = render_walls.pose(wall, 2.0)  # a quarter turn, two metres, a quarter period
+        wall = {
+            "motion": {
+                "velocity": [1, 0, 0],
+                "rotation": {"center": [1, 0, 0], "axis": [0, 0, 3], "rate": math.pi / 4},
+                "oscillation": {"amplitude": [0, 0, 0.5], "frequency": 0.125},
+            }
+        }
+        rotation, translation = render_walls.pose(
+            wall, 2.0
+        )  # a quarter turn, two metres, a quarter period
         numpy.testing.assert_allclose(rotation @ (2, 0, 0) + translation, (3, 1, 0.5), atol=1e-12)
         numpy.testing.assert_allclose(rotation @ (1, 0, 7) + translation, (3, 0, 7.5), atol=1e-12)
         rotation, translation = render_walls.pose({}, 2.0)
@@ -61,13 +88,26 @@ class Walls(unittest.TestCase):
     def test_is_there_from_appear_at_until_remove_at(self):
         wall = {"motion": {"appear_at": 0.1, "remove_at": "3e-1"}}
         times = (0, 0.0999, 10000 * 1e-5, 0.2, 0.29999, 30000 * 1e-5, 1)
-        self.assertEqual([render_walls.is_there(wall, t) for t in times], [False, False, True, True, True, False, False])
-        self.assertTrue(render_walls.is_there({"motion": {"appear_at": 0, "remove_at": "never"}}, 1e9))
+        self.assertEqual(
+            [render_walls.is_there(wall, t) for t in times],
+            [False, False, True, True, True, False, False],
+        )
+        self.assertTrue(
+            render_walls.is_there({"motion": {"appear_at": 0, "remove_at": "never"}}, 1e9)
+        )
 
     def test_cylinder_and_box(self):
-        self.assertEqual(render_walls.box({"min": [0, 1, 2], "max": [3, 4, 5]}).GetBounds(), (0, 3, 1, 4, 2, 5))
+        self.assertEqual(
+            render_walls.box({"min": [0, 1, 2], "max": [3, 4, 5]}).GetBounds(), (0, 3, 1, 4, 2, 5)
+        )
         surface = {"from": [0, 0, 1], "to": [0, 0, 3], "radius": 0.5}
-        self.assertAlmostEqual(numpy.linalg.norm(render_walls.vertices({"surface": {"cylinder": surface}})[:, :2], axis=1).max(), 0.5, 6)
+        self.assertAlmostEqual(
+            numpy.linalg.norm(
+                render_walls.vertices({"surface": {"cylinder": surface}})[:, :2], axis=1
+            ).max(),
+            0.5,
+            6,
+        )
         tube = render_walls.cylinder(surface)
         at = numpy.array([tube.GetPoint(k) for k in range(tube.GetNumberOfPoints())])
         numpy.testing.assert_allclose(numpy.hypot(at[:, 0], at[:, 1]), 0.5)
@@ -80,7 +120,11 @@ class Made:
     corners = None  # no solid
 
     def __init__(self, points, radius, time=0.0):
-        self.points, self.radius, self.time = numpy.array(points, float), numpy.array(radius, float), time
+        self.points, self.radius, self.time = (
+            numpy.array(points, float),
+            numpy.array(radius, float),
+            time,
+        )
 
     def field(self, name):
         return {"radius": self.radius}[name]
@@ -102,29 +146,50 @@ class Drawing(unittest.TestCase):
         self.assertAlmostEqual(rows.mean(), 100 + 0.25 * 90, delta=1)
 
     def test_colour_follows_the_value(self):
-        image = view().draw(Made([[-0.5, 0, 0], [0.5, 0, 0]], [0.4, 0.4]), numpy.array([0.0, 1.0]), (0, 1)).astype(int)
+        image = (
+            view()
+            .draw(Made([[-0.5, 0, 0], [0.5, 0, 0]], [0.4, 0.4]), numpy.array([0.0, 1.0]), (0, 1))
+            .astype(int)
+        )
         left, right = image[100, 55], image[100, 145]
         self.assertGreater(left[0], left[2] + 100)
         self.assertGreater(right[2], right[0] + 100)
 
     def test_prefix_suits_the_largest_value(self):
-        for unit, high, expected in (("Pa", 8e7, (1e6, "M")), ("m/s", 0.13, (1, "")), ("m", 2e-3, (1e-3, "m")), ("N", 7e-5, (1e-6, "\u00b5")),
-                                     ("kg", 1e-6, (1, "")), ("", 1e6, (1, ""))):
+        for unit, high, expected in (
+            ("Pa", 8e7, (1e6, "M")),
+            ("m/s", 0.13, (1, "")),
+            ("m", 2e-3, (1e-3, "m")),
+            ("N", 7e-5, (1e-6, "\u00b5")),
+            ("kg", 1e-6, (1, "")),
+            ("", 1e6, (1, "")),
+        ):
             colours = render_picture.Colours.__new__(render_picture.Colours)
             colours.low, colours.high, colours.unit = 0.0, high, unit
             self.assertEqual(colours.prefix(), expected, unit)
 
     def test_nearer_sphere_hides(self):
-        image = view().draw(Made([[0, 0.5, 0], [0, -0.5, 0]], [0.4, 0.4]), numpy.array([0.0, 1.0]), (0, 1)).astype(int)
+        image = (
+            view()
+            .draw(Made([[0, 0.5, 0], [0, -0.5, 0]], [0.4, 0.4]), numpy.array([0.0, 1.0]), (0, 1))
+            .astype(int)
+        )
         self.assertGreater(image[100, 100, 2], image[100, 100, 0] + 100)
 
     def test_wall_comes_moves_and_goes(self):
-        wall = {"name": "plate", "surface": {"rectangle": {"center": [0, 0, 0], "normal": [0, 1, 0], "size": [0.5, 0.5]}},
-                "motion": {"velocity": [0.5, 0, 0], "appear_at": 0, "remove_at": 1.5}}
+        wall = {
+            "name": "plate",
+            "surface": {
+                "rectangle": {"center": [0, 0, 0], "normal": [0, 1, 0], "size": [0.5, 0.5]}
+            },
+            "motion": {"velocity": [0.5, 0, 0], "appear_at": 0, "remove_at": 1.5},
+        }
         seen = view([wall])
         columns = []
         for time in (0.0, 1.0, 2.0):
-            image = seen.draw(Made(numpy.zeros((0, 3)), [], time), numpy.zeros(0), (0, 1)).astype(int)
+            image = seen.draw(Made(numpy.zeros((0, 3)), [], time), numpy.zeros(0), (0, 1)).astype(
+                int
+            )
             columns.append(numpy.nonzero(image.min(axis=2) < 250)[1])
         self.assertAlmostEqual(columns[0].mean(), 100, delta=1.5)
         self.assertAlmostEqual(columns[1].mean(), 100 + 0.5 * 90, delta=1.5)
@@ -137,7 +202,9 @@ class Drawing(unittest.TestCase):
             right, up, back = render_view.view_axes(numpy.zeros(3), high, (0, 0, -9.81))
             self.assertGreater(abs(back[thin]), 0.9)
             self.assertGreater(up[2], 0.9)
-            self.assertGreater(right[1 - thin], 0.9)  # from -y or from +x: the other axis points to the right
+            self.assertGreater(
+                right[1 - thin], 0.9
+            )  # from -y or from +x: the other axis points to the right
 
     def test_flat_things_are_seen_from_above_a_corner(self):
         """The longer side points to the right, the corner of lowest x and y, or of largest x and lowest y, to the eye."""
@@ -176,11 +243,19 @@ class Folder(unittest.TestCase):
         shutil.rmtree(cls.dir)
 
     def render(self, *arguments, env=None):
-        return subprocess.run([SCRIPTS / "render.py", self.dir, *arguments], capture_output=True, text=True, timeout=120, env=env)
+        return subprocess.run(
+            [SCRIPTS / "render.py", self.dir, *arguments],
+            capture_output=True,
+            text=True,
+            timeout=120,
+            env=env,
+        )
 
     def test_frame(self):
         frame = frames.Frame(self.dir / "frame_000007.hdf")
-        self.assertEqual((frame.unit("velocity"), frame.unit("coordination"), frame.time), ("m/s", "", 0.042))
+        self.assertEqual(
+            (frame.unit("velocity"), frame.unit("coordination"), frame.time), ("m/s", "", 0.042)
+        )
         self.assertEqual(frame.field("displacement").shape, (3, 3))  # of the state, not drawn
         self.assertEqual(frame.unit("displacement"), "m")
         self.assertEqual(frame.field("displacement")[2][1], 2 * 2 - 0.7)
@@ -193,36 +268,72 @@ class Folder(unittest.TestCase):
         image = pyplot.imread(self.dir / "overview.png")[:, :, :3]
         self.assertEqual(image.shape, (480, 640, 3))
         coloured = numpy.ptp(image, axis=2) > 0.2
-        for half in (coloured[:380, :320], coloured[:380, 320:]):  # two frames, two panels; the colour bar lies below
+        for half in (
+            coloured[:380, :320],
+            coloured[:380, 320:],
+        ):  # two frames, two panels; the colour bar lies below
             self.assertGreater(half.sum(), 100)
 
     def test_film(self):
-        run = self.render("--film", "--size", "320x240", "-o", self.dir / "f.mp4", "--field", "coordination")
+        run = self.render(
+            "--film", "--size", "320x240", "-o", self.dir / "f.mp4", "--field", "coordination"
+        )
         self.assertEqual(run.returncode, 0, run.stderr)
-        probe = ["ffprobe", "-v", "error", "-count_frames", "-show_entries", "stream=width,height,nb_read_frames", "-of", "csv=p=0"]
+        probe = [
+            "ffprobe",
+            "-v",
+            "error",
+            "-count_frames",
+            "-show_entries",
+            "stream=width,height,nb_read_frames",
+            "-of",
+            "csv=p=0",
+        ]
         probe.append(self.dir / "f.mp4")
-        self.assertEqual(subprocess.run(probe, capture_output=True, text=True, check=True).stdout.strip(), "320,240,2")
+        self.assertEqual(
+            subprocess.run(probe, capture_output=True, text=True, check=True).stdout.strip(),
+            "320,240,2",
+        )
 
     def test_mistakes_are_named(self):
-        for arguments, says in ((("--frame", "3"), "last is frame_000011.hdf"), (("--field", "colour"), "no field 'colour'"),
-                                (("--frame", "last", "--field", "nothing"), "there are:")):
+        for arguments, says in (
+            (("--frame", "3"), "last is frame_000011.hdf"),
+            (("--field", "colour"), "no field 'colour'"),
+            (("--frame", "last", "--field", "nothing"), "there are:"),
+        ):
             run = self.render(*arguments)
             self.assertEqual(run.returncode, 1)
             self.assertIn(says, run.stderr)
             self.assertNotIn("Traceback", run.stderr)
 
     def test_options_that_are_no_numbers(self):
-        for option, value in (("--frame", "x"), ("--range", "1"), ("--range", "2,1"), ("--size", "10"), ("--size", "0x0"), ("--view", "0,0,0"),
-                              ("--view", "1,0,nan"), ("--fps", "-1")):
-            run = subprocess.run([SCRIPTS / "render.py", self.dir, f"{option}={value}"], capture_output=True, text=True)
+        for option, value in (
+            ("--frame", "x"),
+            ("--range", "1"),
+            ("--range", "2,1"),
+            ("--size", "10"),
+            ("--size", "0x0"),
+            ("--view", "0,0,0"),
+            ("--view", "1,0,nan"),
+            ("--fps", "-1"),
+        ):
+            run = subprocess.run(
+                [SCRIPTS / "render.py", self.dir, f"{option}={value}"],
+                capture_output=True,
+                text=True,
+            )
             self.assertEqual((run.returncode, run.stdout), (2, ""))
             self.assertIn(f"error: argument {option}: '{value}': expected ", run.stderr)
 
     def test_plots(self):
         subprocess.run([TOOL, "record", self.dir], check=True, capture_output=True)
         (self.dir / "notes.csv").write_text("of the user,x\n1,2\n")
-        run = subprocess.run([SCRIPTS / "plot.py", self.dir], capture_output=True, text=True, timeout=60)
-        self.assertEqual((run.returncode, run.stdout.split()), (0, [str(self.dir / "outflow.png")]), run.stderr)
+        run = subprocess.run(
+            [SCRIPTS / "plot.py", self.dir], capture_output=True, text=True, timeout=60
+        )
+        self.assertEqual(
+            (run.returncode, run.stdout.split()), (0, [str(self.dir / "outflow.png")]), run.stderr
+        )
         self.assertGreater(numpy.ptp(pyplot.imread(self.dir / "outflow.png")), 0.5)
 
     def test_series_that_a_crash_cut_short(self):

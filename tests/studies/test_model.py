@@ -16,13 +16,42 @@ def spread(value):
     return {"min": value, "mean": value, "max": value}
 
 
-def record(ranks, loop, compute, regroup, exchange=0.0, wait=0.0, launches=0, imbalance=0.0, sent=(0, 0, 0, 0), kernels=None):
+def record(
+    ranks,
+    loop,
+    compute,
+    regroup,
+    exchange=0.0,
+    wait=0.0,
+    launches=0,
+    imbalance=0.0,
+    sent=(0, 0, 0, 0),
+    kernels=None,
+):
     """100 steps of 1,000 elements. sent: bytes, messages, neighbours, elements."""
-    timers = {"loop": loop, "compute": compute, "exchange": exchange, "wait": wait, "regroup": regroup}
-    raw = {"title": "", "ranks": ranks, "steps": 100, "elements": 1000, "wall_s": {"loop": loop}, "digest": "0", "devices": [{"name": "a device"}],
-           "timers": {name: spread(value) for name, value in timers.items()}, "plain_steps": {"steps": 50, "launches": 50 * launches * ranks},
-           "imbalance": {"mean": imbalance, "max": imbalance},
-           "exchange": {name: spread(value) for name, value in zip(("bytes", "messages", "neighbours", "elements"), sent)}}
+    timers = {
+        "loop": loop,
+        "compute": compute,
+        "exchange": exchange,
+        "wait": wait,
+        "regroup": regroup,
+    }
+    raw = {
+        "title": "",
+        "ranks": ranks,
+        "steps": 100,
+        "elements": 1000,
+        "wall_s": {"loop": loop},
+        "digest": "0",
+        "devices": [{"name": "a device"}],
+        "timers": {name: spread(value) for name, value in timers.items()},
+        "plain_steps": {"steps": 50, "launches": 50 * launches * ranks},
+        "imbalance": {"mean": imbalance, "max": imbalance},
+        "exchange": {
+            name: spread(value)
+            for name, value in zip(("bytes", "messages", "neighbours", "elements"), sent)
+        },
+    }
     if kernels:
         raw["kernels"] = {f"k{i}": {"seconds": s, "launches": 100} for i, s in enumerate(kernels)}
         raw["kernels"]["of_lists"] = {"seconds": 0.1, "launches": 3}
@@ -30,8 +59,24 @@ def record(ranks, loop, compute, regroup, exchange=0.0, wait=0.0, launches=0, im
 
 
 ONE = record(1, loop=1.0, compute=0.8, regroup=0.2, launches=5, kernels=[0.4, 0.2])
-TWO = record(2, loop=0.6, compute=0.4, regroup=0.1, exchange=0.1, wait=0.06, launches=7, imbalance=0.1, sent=(2000, 1, 1, 50))
-MACHINE = model.Machine(bandwidth=2, launch_s=1e-5, network_bytes_per_s=1e6, network_latency_s=1e-3, link_bytes_per_s=4e6)
+TWO = record(
+    2,
+    loop=0.6,
+    compute=0.4,
+    regroup=0.1,
+    exchange=0.1,
+    wait=0.06,
+    launches=7,
+    imbalance=0.1,
+    sent=(2000, 1, 1, 50),
+)
+MACHINE = model.Machine(
+    bandwidth=2,
+    launch_s=1e-5,
+    network_bytes_per_s=1e6,
+    network_latency_s=1e-3,
+    link_bytes_per_s=4e6,
+)
 
 
 class Model(unittest.TestCase):
@@ -52,7 +97,9 @@ class Model(unittest.TestCase):
     def test_step(self):
         """Two ranks: 500 elements each, 10 % more on one, a tenth of them sent."""
         t = model.traffic_at(2, 500, self.records, self.rates)
-        self.assertEqual((t.messages, t.bytes, t.boundary, t.imbalance, t.launches), (1, 2000, 50, 0.1, 7))
+        self.assertEqual(
+            (t.messages, t.bytes, t.boundary, t.imbalance, t.launches), (1, 2000, 50, 0.1, 7)
+        )
         parts = model.step_time(500, t, self.rates, MACHINE)
         self.assertAlmostEqual(parts["launches"], 7e-5)
         self.assertAlmostEqual(parts["kernels"], 1.65e-3)  # 6e-6 * 500 * 1.1 / 2
@@ -87,7 +134,9 @@ class Model(unittest.TestCase):
     def test_shares(self):
         """Exchange is without wait, so that all add up."""
         shares = self.records[1].shares()
-        for share, right in zip(shares, (100 * 0.4 / 0.6, 100 * 0.04 / 0.6, 100 * 0.06 / 0.6, 100 * 0.1 / 0.6)):
+        for share, right in zip(
+            shares, (100 * 0.4 / 0.6, 100 * 0.04 / 0.6, 100 * 0.06 / 0.6, 100 * 0.1 / 0.6)
+        ):
             self.assertAlmostEqual(share, right)
         self.assertAlmostEqual(sum(shares), 100)
 
@@ -102,19 +151,30 @@ class Model(unittest.TestCase):
             with open(machine, "w") as file:
                 file.write("bandwidth: 2\nlaunch_s: 1e-5\nnetwork_latency_s: 2e-6\n")
             script, out = os.path.join(SCRIPTS, "model.py"), os.path.join(folder, "out")
-            run = subprocess.run([script, *paths, "--machine", machine, "--ranks", "1,2,8", "--out", out], capture_output=True, text=True)
+            run = subprocess.run(
+                [script, *paths, "--machine", machine, "--ranks", "1,2,8", "--out", out],
+                capture_output=True,
+                text=True,
+            )
             self.assertEqual((run.returncode, run.stderr), (0, ""))
             self.assertIn("Assumed:", run.stdout)
             self.assertEqual(sorted(os.listdir(out)), ["model.csv", "model.md", "model.png"])
-            run = subprocess.run([script, "--check", *paths, "--out", out], capture_output=True, text=True)
+            run = subprocess.run(
+                [script, "--check", *paths, "--out", out], capture_output=True, text=True
+            )
             self.assertEqual((run.returncode, run.stderr), (0, ""))
             with open(os.path.join(out, "check.csv")) as file:
                 rows = [line.strip().split(",") for line in file][1:]
             # One rank: its parts add up. Two: 7 * 400 us + 3,300 us + 1,000 us; 1 - 2.2 us of exchange are hidden.
-            self.assertEqual([[round(float(v), 6) for v in row[2:4]] for row in rows], [[10000, 10000], [7100, 6000]])
+            self.assertEqual(
+                [[round(float(v), 6) for v in row[2:4]] for row in rows],
+                [[10000, 10000], [7100, 6000]],
+            )
             with open(machine, "w") as file:
                 file.write("bandwith: 2\n")
-            run = subprocess.run([script, *paths, "--machine", machine], capture_output=True, text=True)
+            run = subprocess.run(
+                [script, *paths, "--machine", machine], capture_output=True, text=True
+            )
             self.assertEqual(run.returncode, 1)
             self.assertIn("unknown key 'bandwith'", run.stderr)
 

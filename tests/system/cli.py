@@ -30,8 +30,18 @@ def launch(parts, cwd=None, env=None, stdout=subprocess.PIPE):
     command = [] if parts[0][0] == 1 and len(parts) == 1 else [MPIRUN, *MPIRUN_ARGS]
     for k, (ranks, args) in enumerate(parts):
         command += [":"] * (k > 0) + (["-n", str(ranks)] if command else []) + [DEMOCLES, *args]
-    return Result(subprocess.run(command, cwd=cwd, env={**os.environ, **(env or {})}, stdin=subprocess.DEVNULL, stdout=stdout,
-                                 stderr=subprocess.PIPE, text=True, timeout=60))
+    return Result(
+        subprocess.run(
+            command,
+            cwd=cwd,
+            env={**os.environ, **(env or {})},
+            stdin=subprocess.DEVNULL,
+            stdout=stdout,
+            stderr=subprocess.PIPE,
+            text=True,
+            timeout=60,
+        )
+    )
 
 
 class Case(unittest.TestCase):
@@ -52,5 +62,9 @@ class Case(unittest.TestCase):
 def main(first=1):
     """Arguments from the first on: democles, mpirun, its arguments; before them: the class of tests, else all."""
     global DEMOCLES, MPIRUN, MPIRUN_ARGS
-    DEMOCLES, MPIRUN, MPIRUN_ARGS = os.path.abspath(sys.argv[first]), sys.argv[first + 1], sys.argv[first + 2:]
+    DEMOCLES, MPIRUN, MPIRUN_ARGS = (
+        os.path.abspath(sys.argv[first]),
+        sys.argv[first + 1],
+        sys.argv[first + 2 :],
+    )
     unittest.main(argv=sys.argv[:first], module="__main__")

@@ -5,7 +5,12 @@ import os
 
 import parallel_runs
 
-TURNING = ["--set", "bodies.plate.velocity=[3, -2, 1]", "--set", "bodies.plate.angular_velocity=[2, 5, -3]"]
+TURNING = [
+    "--set",
+    "bodies.plate.velocity=[3, -2, 1]",
+    "--set",
+    "bodies.plate.angular_velocity=[2, 5, -3]",
+]
 
 
 class Cases(parallel_runs.Case):
@@ -19,7 +24,10 @@ class Cases(parallel_runs.Case):
             with self.subTest(case=name, ranks=ranks):
                 run = self.good_run(self.path(name), ranks, *args)
                 record = run.record()
-                found = {key: record.get(key) for key in ("digest", "steps", "dt", "energy", "momentum", "rest")}, run.series()
+                found = {
+                    key: record.get(key)
+                    for key in ("digest", "steps", "dt", "energy", "momentum", "rest")
+                }, run.series()
                 self.assertEqual(record["ranks"], ranks)
                 self.assertTrue(ranks == 1 or record["halo_bytes_per_step"] > 0)
                 alone = alone or found
@@ -28,11 +36,15 @@ class Cases(parallel_runs.Case):
 
     def test_plate(self):
         """All of the plate moves at once, so that every border has something to carry."""
-        record = self.same("plate", (1, 2, 3, 4, 8), "--steps", "16", "--set", "output.every=0", *TURNING)
+        record = self.same(
+            "plate", (1, 2, 3, 4, 8), "--steps", "16", "--set", "output.every=0", *TURNING
+        )
         self.assertEqual((record["scheme"], record["elements"]), ("rk4", 51200))
 
     def test_spinning_block(self):
-        record = self.same("spinning_block", (1, 2, 3, 4, 8), "--steps", "300", "--set", "output.every=0")
+        record = self.same(
+            "spinning_block", (1, 2, 3, 4, 8), "--steps", "300", "--set", "output.every=0"
+        )
         self.assertEqual((record["scheme"], record["features"]["turn"]), ("leapfrog", 1))
 
     def test_rest(self):
@@ -42,12 +54,19 @@ class Cases(parallel_runs.Case):
 
     def test_no_rest(self):
         """Too early an end, or something that is led for ever: exit code 5, with the last frame and the record."""
-        for args in (("time.end=0.1ms",), ("time.end=0.3ms", "boundaries[0]={where: all, velocity: [free, free, 1]}")):
-            run = self.run_scene(self.path("patch"), 2, *(word for arg in args for word in ("--set", arg)))
+        for args in (
+            ("time.end=0.1ms",),
+            ("time.end=0.3ms", "boundaries[0]={where: all, velocity: [free, free, 1]}"),
+        ):
+            run = self.run_scene(
+                self.path("patch"), 2, *(word for arg in args for word in ("--set", arg))
+            )
             self.assertEqual(run.code, 5, run.err)
             self.assertEqual(run.err.count("no static equilibrium by time.end"), 1, run.err)
             record = run.record()
-            self.assertEqual((record["exit"], record["rest"]["reached"], len(run.frames())), (5, False, 2))
+            self.assertEqual(
+                (record["exit"], record["rest"]["reached"], len(run.frames())), (5, False, 2)
+            )
         stopped = self.good_run(self.path("patch"), 1, "--steps", "50").record()
         self.assertFalse(stopped["rest"]["reached"])
 

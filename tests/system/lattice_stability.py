@@ -13,7 +13,13 @@ STEPS = 4000
 EDGE, CELLS = 0.01, 16
 # [s] 0.1 and 2 of the critical ratio at the highest frequency. For rk4 the limit is exact above 1, and a safe bound below (lattice_limit.c).
 ETA = {"leapfrog": 1e-7, "rk4": 2e-6}
-DAMPING = {"leapfrog": ("none", "mass", "link"), "rk4": ("none", "mass", "link"), "rkn4": ("none",), "pefrl": ("none",), "vefrl": ("none",)}
+DAMPING = {
+    "leapfrog": ("none", "mass", "link"),
+    "rk4": ("none", "mass", "link"),
+    "rkn4": ("none",),
+    "pefrl": ("none",),
+    "vefrl": ("none",),
+}
 
 
 def block(scheme, damping):
@@ -22,12 +28,26 @@ def block(scheme, damping):
     material = {"density": 2700, "young": 70e9, "poisson": 0.3}
     if damping != "none":
         material["damping"] = {damping: 100.0 if damping == "mass" else ETA[scheme]}
-    bodies = [{"name": name, "material": "m", "cell": EDGE, "velocity": [v, 0.3 * v, 0],
-               "shape": {"box": {"min": [x, 0, 0], "max": [x + half, side, side]}}}
-              for name, x, v in (("left", 0, 1), ("right", half, -1))]
-    return {"title": "struck block", "method": "lattice", "time": {"end": 1, "scheme": scheme}, "materials": {"m": material}, "bodies": bodies,
-            "lattice": {"rotation": "small"}, "output": {"every": 0},
-            "measure": [{"name": "energy", "every": 1, "energy": "all"}]}
+    bodies = [
+        {
+            "name": name,
+            "material": "m",
+            "cell": EDGE,
+            "velocity": [v, 0.3 * v, 0],
+            "shape": {"box": {"min": [x, 0, 0], "max": [x + half, side, side]}},
+        }
+        for name, x, v in (("left", 0, 1), ("right", half, -1))
+    ]
+    return {
+        "title": "struck block",
+        "method": "lattice",
+        "time": {"end": 1, "scheme": scheme},
+        "materials": {"m": material},
+        "bodies": bodies,
+        "lattice": {"rotation": "small"},
+        "output": {"every": 0},
+        "measure": [{"name": "energy", "every": 1, "energy": "all"}],
+    }
 
 
 class Stability(parallel_runs.Case):
@@ -50,10 +70,15 @@ class Stability(parallel_runs.Case):
                     self.assertEqual(calm.code, 0, calm.err)
                     line = calm.series()["energy.csv"].splitlines()
                     kinetic = [float(row.split(",")[1]) for row in (line[1], line[-1])]
-                    self.assertTrue(math.isfinite(kinetic[1]) and 0 <= kinetic[1] < kinetic[0], kinetic)
+                    self.assertTrue(
+                        math.isfinite(kinetic[1]) and 0 <= kinetic[1] < kinetic[0], kinetic
+                    )
                     wild = self.at(scene, limit, 1.05)
                     self.assertEqual(wild.code, 5, wild.err)
-                    self.assertRegex(wild.err, r"are not numbers; the time step \S+ s is 1\.05 of the critical one")
+                    self.assertRegex(
+                        wild.err,
+                        r"are not numbers; the time step \S+ s is 1\.05 of the critical one",
+                    )
 
 
 if __name__ == "__main__":

@@ -20,9 +20,13 @@ class Counters(parallel_runs.Case):
             with self.subTest(scene=name):
                 record, steps = self.plain(name, 1, precision)
                 self.assertEqual(steps["from_device_bytes"], FLAGS * steps["from_device"])
-                self.assertLessEqual(steps["from_device"], steps["steps"] / 3)  # flags are read every fourth step
+                self.assertLessEqual(
+                    steps["from_device"], steps["steps"] / 3
+                )  # flags are read every fourth step
                 self.assertGreater(steps["from_device"], steps["steps"] / 5)
-                self.assertLessEqual(steps["to_device"], record["steps"] // BATCH if name == "moving" else 0)
+                self.assertLessEqual(
+                    steps["to_device"], record["steps"] // BATCH if name == "moving" else 0
+                )
                 self.assertEqual(record["halo_bytes_per_step"], 0)
 
     def test_ranks(self):
@@ -31,10 +35,14 @@ class Counters(parallel_runs.Case):
         for name, precision, word in (("hertz", "double", 8), ("gas_xyz", "single", 4)):
             with self.subTest(scene=name):
                 record, steps = self.plain(name, ranks, precision)
-                ghosts = steps["from_device_bytes"] - FLAGS * (steps["from_device"] - steps["to_device"])
+                ghosts = steps["from_device_bytes"] - FLAGS * (
+                    steps["from_device"] - steps["to_device"]
+                )
                 self.assertEqual(ghosts, steps["to_device_bytes"])
                 self.assertGreater(ghosts, 0)
-                self.assertEqual(ghosts % (12 * word), 0)  # position and radius, velocity and mass, spin and material
+                self.assertEqual(
+                    ghosts % (12 * word), 0
+                )  # position and radius, velocity and mass, spin and material
                 self.assertLess(ghosts / steps["steps"], record["elements"] * 12 * word * ranks)
                 self.assertLessEqual(steps["from_device"], 1.5 * ranks * steps["steps"])
                 self.assertLessEqual(steps["to_device"], ranks * steps["steps"])

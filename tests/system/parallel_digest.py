@@ -3,7 +3,13 @@
 import parallel_runs
 
 # With `some` one precision for each scene: that in which resume_runs.py runs it too, if it does, so that kernels are compiled once for both.
-SOME = {"funnel": "mixed", "gas_x": "mixed", "gas_xyz": "single", "shear": "mixed", "thin": "single"}
+SOME = {
+    "funnel": "mixed",
+    "gas_x": "mixed",
+    "gas_xyz": "single",
+    "shear": "mixed",
+    "thin": "single",
+}
 SOME_RANKS = (1, 3)
 # With `all` everything for the scenes that stand for whole cases; the rest takes turns.
 FULL = {"double": (1, 2, 3, 4, 8), "single": (1, 2, 3, 4, 8), "mixed": (1, 3)}
@@ -21,7 +27,20 @@ def runs(name):
 def of_all(run):
     """What must not depend on ranks."""
     record = run.record()
-    same = {key: record[key] for key in ("digest", "steps", "dt", "dt_limit", "elements", "elements_removed", "rebuilds", "energy", "momentum")}
+    same = {
+        key: record[key]
+        for key in (
+            "digest",
+            "steps",
+            "dt",
+            "dt_limit",
+            "elements",
+            "elements_removed",
+            "rebuilds",
+            "energy",
+            "momentum",
+        )
+    }
     return same, run.series(), run.contacts()
 
 
@@ -47,7 +66,9 @@ class Digest(parallel_runs.Case):
                             self.assertGreater(record["energy"]["end"]["sliding"], 0)
                         moved += record["migrations"]
                 if name != "three":
-                    self.assertGreater(moved, 0, "nothing has changed hands: the test tests nothing")
+                    self.assertGreater(
+                        moved, 0, "nothing has changed hands: the test tests nothing"
+                    )
 
 
 if __name__ == "__main__":

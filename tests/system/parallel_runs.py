@@ -48,7 +48,10 @@ class Run:
         """(kind, element, partner) -> state and history of all contacts in the last frame."""
         frame, found = frames.Frame(self.frames()[-1]), {}
         for kind, partner in (("pairs", "partner"), ("wall_contacts", "primitive")):
-            columns = {name: frames.state(frame.path, f"{kind}/{name}") for name in ("id", partner, "state", "history")}
+            columns = {
+                name: frames.state(frame.path, f"{kind}/{name}")
+                for name in ("id", partner, "state", "history")
+            }
             if columns["id"] is None or not len(columns["id"]):
                 continue
             rest = [c for c in (columns["state"], columns["history"]) if c is not None]
@@ -71,8 +74,17 @@ class Case(unittest.TestCase):
         """Runs to its end; a run that hangs fails the test."""
         out = os.path.join(self.dir, name)
         shutil.rmtree(out, True)
-        run = subprocess.run(command(ranks, "run", scene, "-o", out, "--quiet", *args), cwd=self.dir, env={**os.environ, **(env or {})},
-                             stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, timeout=HANG, **more)
+        run = subprocess.run(
+            command(ranks, "run", scene, "-o", out, "--quiet", *args),
+            cwd=self.dir,
+            env={**os.environ, **(env or {})},
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+            timeout=HANG,
+            **more,
+        )
         return Run(out, run.returncode, run.stderr)
 
     def good_run(self, scene, ranks, *args, **more):
@@ -87,5 +99,9 @@ def main(own=None):
     global DEMOCLES, MPIRUN, CASES, OWN, MPIRUN_ARGS
     split = sys.argv.index("--")
     DEMOCLES, MPIRUN, CASES, *OWN = sys.argv[1:split]
-    DEMOCLES, CASES, MPIRUN_ARGS = os.path.abspath(DEMOCLES), os.path.abspath(CASES), sys.argv[split + 1:]
+    DEMOCLES, CASES, MPIRUN_ARGS = (
+        os.path.abspath(DEMOCLES),
+        os.path.abspath(CASES),
+        sys.argv[split + 1 :],
+    )
     unittest.main(argv=sys.argv[:1] + (OWN[own:] if own is not None else []), module="__main__")

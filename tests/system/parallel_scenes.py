@@ -3,78 +3,22 @@
 Each is written into a folder by `put`: scene.yaml and what it reads. Steps are few and rebuilds many, so that elements change hands all the time."""
 import math
 import os
-import random
 
 import yaml
 
-GLASS = {"density": 2500, "young": 5e6, "poisson": 0.25}
-STEEL = {"density": 7850, "young": 2e7, "poisson": 0.3}
-LINEAR = {"law": "linear", "stiffness": 1000, "damping_ratio": 0.1}
-HERTZ = {"law": "hertz", "restitution": 0.6}
-FRICTION = {"stiffness_ratio": 0.8, "damping_ratio": 0.1, "friction": 0.3}
-EVERYTHING = [{"name": "energy", "energy": "all"}, {"name": "momentum", "momentum": "all"}, {"name": "probe", "probe": {"element": 1}}]
-
-
-def scene(steps, dt, contact, elements, walls=(), materials=None, measure=(), observe=5, **more):
-    """A scene of glass elements and steel walls with one contact law; frames at both ends, measures `observe` times."""
-    end = steps * dt
-    return {
-        "title": "parallel test", "method": "particles", "time": {"end": end, "step": dt}, "gravity": [0.3, 0.2, -9.81],
-        "materials": materials or {"glass": GLASS, "steel": STEEL},
-        "contacts": [{"between": ["glass", other], **contact} for other in (["glass", "steel"] if walls else ["glass"])],
-        "elements": [{"material": "glass", **group} for group in elements],
-        "walls": [{"material": "steel", **wall} for wall in walls],
-        "partition": {"every": 10, "threshold": 0},
-        "measure": [{"every": end / observe, **m} for m in [*EVERYTHING, *({"name": w["name"], "wall_force": w["name"]} for w in walls), *measure]],
-        **more}
-
-
-def block(name, low, high, diameter, velocity=(0, 0, 0), **fill):
-    """Elements in a box; diameter: a number or (min, max)."""
-    size = {"min": diameter[0], "max": diameter[1]} if isinstance(diameter, tuple) else diameter
-    return {"name": name, "shape": {"sphere": {"diameter": size}}, "velocity": list(velocity),
-            "fill": {"region": {"box": {"min": list(low), "max": list(high)}}, "jitter": 0.05, "seed": 3, **fill}}
-
-
-def box(name, low, high, **motion):
-    return {"name": name, "surface": {"box": {"min": list(low), "max": list(high)}}, **({"motion": motion} if motion else {})}
-
-
-def stl(name, triangles):
-    """ASCII STL of [(a, b, c), ...] in metres."""
-    facets = "".join("facet normal 0 0 0\nouter loop\n" + "".join("vertex %.17g %.17g %.17g\n" % v for v in t) +
-        "endloop\nendfacet\n" for t in triangles)
-    return f"solid {name}\n{facets}endsolid {name}\n"
-
-
-def drum_stl(radius, length, sides):
-    """A prism along y, closed: for a drum turning about y."""
-    ring = [(radius * math.cos(2 * math.pi * k / sides), radius * math.sin(2 * math.pi * k / sides)) for k in range(sides)]
-    out = []
-    for (ax, az), (bx, bz) in zip(ring, ring[1:] + ring[:1]):
-        a0, a1, b0, b1 = (ax, 0, az), (ax, length, az), (bx, 0, bz), (bx, length, bz)
-        out += [(a0, b0, b1), (a0, b1, a1), ((0, 0, 0), b0, a0), ((0, length, 0), a1, b1)]
-    return stl("drum", out)
-
-
-def sheet_stl(low, high, n, height):
-    """A wavy sheet of 2 n^2 triangles over a square, height(x, y)."""
-    step = (high - low) / n
-    at = [[(low + i * step, low + j * step, height(low + i * step, low + j * step)) for j in range(n + 1)] for i in range(n + 1)]
-    return stl("sheet", [t for i in range(n) for j in range(n)
-                         for t in ((at[i][j], at[i + 1][j], at[i + 1][j + 1]), (at[i][j], at[i + 1][j + 1], at[i][j + 1]))])
-
-
-def gas_csv(n, size, radius, speed, seed=5):
-    """n spheres without overlap in a periodic cube (0..size each axis), some across its faces, random velocities and spins."""
-    rng, points = random.Random(seed), []
-    while len(points) < n:
-        p = [rng.uniform(0, s) for s in size]
-        apart = (math.sqrt(sum(min(abs(a - b), s - abs(a - b))**2 for a, b, s in zip(p, q, size))) for q in points)
-        if all(d > 2.05 * radius for d in apart):
-            points.append(p)
-    rows = [p + [radius] + [rng.gauss(0, speed) for _ in range(3)] + [rng.gauss(0, speed / radius) for _ in range(3)] for p in points]
-    return "x,y,z,radius,vx,vy,vz,wx,wy,wz\n" + "".join(",".join("%.17g" % value for value in row) + "\n" for row in rows)
+from scene_parts import (
+    FRICTION,
+    HERTZ,
+    LINEAR,
+    block,
+    box,
+    drum_stl,
+    gas_csv,
+    scene,
+    sheet_stl,
+    stl,
+)
+from short_scenes import few, mixed
 
 
 def funnel(cases):
@@ -90,7 +34,10 @@ def funnel(cases):
             wall["motion"] = {"remove_at": 0.01}
     s["partition"] = {"every": 10, "threshold": 0}
     s["output"] = {}
-    s["measure"] = [{"name": "outflow", "every": 0.003, "count": {"below": {"z": 0}}}, {"name": "energy", "every": 0.003, "energy": "all"}]
+    s["measure"] = [
+        {"name": "outflow", "every": 0.003, "count": {"below": {"z": 0}}},
+        {"name": "energy", "every": 0.003, "energy": "all"},
+    ]
     files = {}
     for name in ("filling.stl", "funnel.stl"):
         with open(os.path.join(cases, "v_funnel", name)) as file:
@@ -100,27 +47,67 @@ def funnel(cases):
 
 def column(cases):
     """A column that collapses into a trough, with cohesive bonds: the L-box in small."""
-    walls = [box("trough", (0, 0, 0), (0.3, 0.04, 0.2)),
-             {"name": "gate", "surface": {"rectangle": {"center": [0.05, 0.02, 0.1], "normal": [1, 0, 0], "size": [0.2, 0.2]}},
-                 "motion": {"remove_at": 0.004}}]
+    walls = [
+        box("trough", (0, 0, 0), (0.3, 0.04, 0.2)),
+        {
+            "name": "gate",
+            "surface": {
+                "rectangle": {"center": [0.05, 0.02, 0.1], "normal": [1, 0, 0], "size": [0.2, 0.2]}
+            },
+            "motion": {"remove_at": 0.004},
+        },
+    ]
     contact = {"normal": LINEAR, "tangential": FRICTION, "binding": {"force": 1e-2}}
-    return scene(600, 2e-5, contact, [block("mortar", (0.0, 0.0, 0.0), (0.047, 0.04, 0.15), 0.008, velocity=(0.8, 0, -1))], walls), {}
+    return (
+        scene(
+            600,
+            2e-5,
+            contact,
+            [block("mortar", (0.0, 0.0, 0.0), (0.047, 0.04, 0.15), 0.008, velocity=(0.8, 0, -1))],
+            walls,
+        ),
+        {},
+    )
 
 
 def hertz(cases):
     """Sizes 1 to 4 on a wavy mesh in a cylinder, Hertz, rolling springs, bonds."""
-    contact = {"normal": HERTZ, "tangential": {"damping_ratio": 0.2, "friction": 0.4},
-               "rolling": {"model": "epsd", "friction": 0.1, "damping_ratio": 0.3}, "binding": {"force": 2e-3}}
-    walls = [{"name": "sheet", "surface": {"stl": "sheet.stl"}},
-             {"name": "tube", "surface": {"cylinder": {"from": [0, 0, 0], "to": [0, 0, 1], "radius": 0.045}}}]
-    elements = [block("small", (-0.028, -0.028, 0.005), (0.028, 0.028, 0.03), (0.004, 0.006), velocity=(1, 0, -1)),
-                block("large", (-0.022, -0.022, 0.031), (0.022, 0.022, 0.065), 0.016, velocity=(0, 1, -4))]
-    return (scene(600, 2e-5, contact, elements, walls),
-            {"sheet.stl": sheet_stl(-0.05, 0.05, 6, lambda x, y: 0.004 * math.sin(90 * x) * math.cos(70 * y))})
+    contact = {
+        "normal": HERTZ,
+        "tangential": {"damping_ratio": 0.2, "friction": 0.4},
+        "rolling": {"model": "epsd", "friction": 0.1, "damping_ratio": 0.3},
+        "binding": {"force": 2e-3},
+    }
+    walls = [
+        {"name": "sheet", "surface": {"stl": "sheet.stl"}},
+        {
+            "name": "tube",
+            "surface": {"cylinder": {"from": [0, 0, 0], "to": [0, 0, 1], "radius": 0.045}},
+        },
+    ]
+    elements = [
+        block(
+            "small",
+            (-0.028, -0.028, 0.005),
+            (0.028, 0.028, 0.03),
+            (0.004, 0.006),
+            velocity=(1, 0, -1),
+        ),
+        block("large", (-0.022, -0.022, 0.031), (0.022, 0.022, 0.065), 0.016, velocity=(0, 1, -4)),
+    ]
+    return (
+        scene(600, 2e-5, contact, elements, walls),
+        {
+            "sheet.stl": sheet_stl(
+                -0.05, 0.05, 6, lambda x, y: 0.004 * math.sin(90 * x) * math.cos(70 * y)
+            )
+        },
+    )
 
 
 def gas(axes, n=60, size=(0.05, 0.04, 0.045), radius=0.0025, speed=2.0, steps=800):
     """Fast spheres in a box that is periodic along some axes and has walls across the others, fixed drift through its faces."""
+
     def make(cases):
         # A wall across an axis that does not repeat: two planes.
         walls = []
@@ -131,23 +118,64 @@ def gas(axes, n=60, size=(0.05, 0.04, 0.045), radius=0.0025, speed=2.0, steps=80
             for side, sign in ((0, 1), (size[k], -1)):
                 normal[k], point = sign, [0, 0, 0]
                 point[k] = side + (-0.0026 if sign > 0 else 0.0026)
-                walls.append({"name": axis + ("low" if sign > 0 else "high"), "surface": {"plane": {"point": point, "normal": list(normal)}}})
+                walls.append(
+                    {
+                        "name": axis + ("low" if sign > 0 else "high"),
+                        "surface": {"plane": {"point": point, "normal": list(normal)}},
+                    }
+                )
         contact = {"normal": LINEAR, "tangential": FRICTION}
         low = [0 if a in axes else -0.01 for a in "xyz"]
         high = [s if a in axes else s + 0.01 for a, s in zip("xyz", size)]
-        return (scene(steps, 1e-5, contact, [{"name": "gas", "file": "gas.csv"}], walls,
-                      domain={"periodic": list(axes), "box": {"min": low, "max": high}}, output={"fields": ["velocity", "orientation"]}),
-                {"gas.csv": gas_csv(n, size, radius, speed)})
+        return (
+            scene(
+                steps,
+                1e-5,
+                contact,
+                [{"name": "gas", "file": "gas.csv"}],
+                walls,
+                domain={"periodic": list(axes), "box": {"min": low, "max": high}},
+                output={"fields": ["velocity", "orientation"]},
+            ),
+            {"gas.csv": gas_csv(n, size, radius, speed)},
+        )
+
     return make
 
 
 def shear(cases):
     """A dense layer between two rough plates that move against each other, periodic along the flow and across it."""
-    plates = [{"name": "bottom", "surface": {"plane": {"point": [0, 0, 0], "normal": [0, 0, 1]}}, "motion": {"velocity": [-1.5, 0, 0]}},
-              {"name": "top", "surface": {"plane": {"point": [0, 0, 0.016], "normal": [0, 0, -1]}}, "motion": {"velocity": [1.5, 0.2, 0]}}]
-    contact = {"normal": LINEAR, "tangential": {**FRICTION, "friction": 0.7}, "rolling": {"model": "cdt", "friction": 0.05}}
-    return scene(600, 2e-5, contact, [block("layer", (0, 0, 0.0005), (0.06, 0.03, 0.0155), 0.0047, velocity=(0.3, 0.3, -1))], plates,
-                 domain={"periodic": ["x", "y"], "box": {"min": [0, 0, -0.01], "max": [0.06, 0.03, 0.03]}}), {}
+    plates = [
+        {
+            "name": "bottom",
+            "surface": {"plane": {"point": [0, 0, 0], "normal": [0, 0, 1]}},
+            "motion": {"velocity": [-1.5, 0, 0]},
+        },
+        {
+            "name": "top",
+            "surface": {"plane": {"point": [0, 0, 0.016], "normal": [0, 0, -1]}},
+            "motion": {"velocity": [1.5, 0.2, 0]},
+        },
+    ]
+    contact = {
+        "normal": LINEAR,
+        "tangential": {**FRICTION, "friction": 0.7},
+        "rolling": {"model": "cdt", "friction": 0.05},
+    }
+    return (
+        scene(
+            600,
+            2e-5,
+            contact,
+            [block("layer", (0, 0, 0.0005), (0.06, 0.03, 0.0155), 0.0047, velocity=(0.3, 0.3, -1))],
+            plates,
+            domain={
+                "periodic": ["x", "y"],
+                "box": {"min": [0, 0, -0.01], "max": [0.06, 0.03, 0.03]},
+            },
+        ),
+        {},
+    )
 
 
 def three(cases):
@@ -155,106 +183,133 @@ def three(cases):
     rows = "x,y,z,radius,vx,vy,vz\n0,0,0.006,0.005,1,0,0\n0.0105,0.001,0.005,0.005,-1,0,0\n0.005,0.012,0.006,0.006,0,-2,0\n"
     contact = {"normal": LINEAR, "tangential": FRICTION, "binding": {"force": 1e-2}}
     walls = [{"name": "floor", "surface": {"plane": {"point": [0, 0, 0], "normal": [0, 0, 1]}}}]
-    return scene(400, 1e-5, contact, [{"name": "three", "file": "three.csv"}], walls), {"three.csv": rows}
+    return scene(400, 1e-5, contact, [{"name": "three", "file": "three.csv"}], walls), {
+        "three.csv": rows
+    }
 
 
 def thin(cases):
     """A bed one element thick and few long, some large: subdomains thinner than the halo, ghosts from ranks beyond the next."""
     contact = {"normal": LINEAR, "tangential": FRICTION}
     walls = [box("trough", (0, 0, 0), (0.12, 0.011, 0.05))]
-    elements = [block("row", (0, 0, 0), (0.12, 0.011, 0.006), 0.005, velocity=(0.5, 0, 0)), block("above", (0, 0, 0.007), (0.12, 0.011, 0.018), 0.01,
-                                                                                              velocity=(-0.8, 0, -1))]
+    elements = [
+        block("row", (0, 0, 0), (0.12, 0.011, 0.006), 0.005, velocity=(0.5, 0, 0)),
+        block("above", (0, 0, 0.007), (0.12, 0.011, 0.018), 0.01, velocity=(-0.8, 0, -1)),
+    ]
     return scene(500, 2e-5, contact, elements, walls), {}
 
 
 def moving(cases):
     """A shaken box, a turning drum of triangles with its lid gone and back, a cylinder that turns inside; a plate that comes and a plate that
     goes."""
-    walls = [{"name": "drum", "surface": {"stl": "drum.stl"}, "motion": {"rotation": {"center": [0, 0, 0], "axis": [0, 1, 0], "rate": 40}}},
-             {"name": "rod", "surface": {"cylinder": {"from": [0.02, -1, 0], "to": [0.02, 1, 0], "radius": 0.006, "inside": False}},
-              "motion": {"rotation": {"center": [0, 0, 0], "axis": [0, 1, 0], "rate": -25}}},
-             {"name": "plate", "surface": {"rectangle": {"center": [-0.01, 0.03, -0.012], "normal": [0.2, 0, 1], "size": [0.02, 0.06]}},
-              "motion": {"oscillation": {"amplitude": [0, 0, 0.008], "frequency": 80, "phase": 0.4}, "velocity": [0.2, 0, 0], "appear_at": 0.003,
-                  "remove_at": 0.007}},
-             {"name": "shelf", "surface": {"rectangle": {"center": [-0.02, 0.03, 0.004], "normal": [0, 0, 1], "size": [0.02, 0.06]}},
-                 "motion": {"remove_at": 0.002}}]
+    walls = [
+        {
+            "name": "drum",
+            "surface": {"stl": "drum.stl"},
+            "motion": {"rotation": {"center": [0, 0, 0], "axis": [0, 1, 0], "rate": 40}},
+        },
+        {
+            "name": "rod",
+            "surface": {
+                "cylinder": {
+                    "from": [0.02, -1, 0],
+                    "to": [0.02, 1, 0],
+                    "radius": 0.006,
+                    "inside": False,
+                }
+            },
+            "motion": {"rotation": {"center": [0, 0, 0], "axis": [0, 1, 0], "rate": -25}},
+        },
+        {
+            "name": "plate",
+            "surface": {
+                "rectangle": {
+                    "center": [-0.01, 0.03, -0.012],
+                    "normal": [0.2, 0, 1],
+                    "size": [0.02, 0.06],
+                }
+            },
+            "motion": {
+                "oscillation": {"amplitude": [0, 0, 0.008], "frequency": 80, "phase": 0.4},
+                "velocity": [0.2, 0, 0],
+                "appear_at": 0.003,
+                "remove_at": 0.007,
+            },
+        },
+        {
+            "name": "shelf",
+            "surface": {
+                "rectangle": {
+                    "center": [-0.02, 0.03, 0.004],
+                    "normal": [0, 0, 1],
+                    "size": [0.02, 0.06],
+                }
+            },
+            "motion": {"remove_at": 0.002},
+        },
+    ]
     contact = {"normal": LINEAR, "tangential": {**FRICTION, "friction": 0.5}}
-    elements = [block("balls", (-0.03, 0.002, -0.027), (0.012, 0.058, -0.012), 0.005, velocity=(1, 0, -2)),
-                block("on_the_shelf", (-0.029, 0.002, 0.005), (-0.011, 0.058, 0.012), 0.005, velocity=(0, 0, -1.5))]
+    elements = [
+        block("balls", (-0.03, 0.002, -0.027), (0.012, 0.058, -0.012), 0.005, velocity=(1, 0, -2)),
+        block(
+            "on_the_shelf",
+            (-0.029, 0.002, 0.005),
+            (-0.011, 0.058, 0.012),
+            0.005,
+            velocity=(0, 0, -1.5),
+        ),
+    ]
     return scene(500, 2e-5, contact, elements, walls), {"drum.stl": drum_stl(0.045, 0.06, 14)}
 
 
 def leaving(cases):
     """Elements that fly out of the domain on all sides while they collide, few left at the end."""
     contact = {"normal": LINEAR, "tangential": FRICTION, "binding": {"force": 5e-3}}
-    elements = [block("left", (0, 0, 0), (0.02, 0.03, 0.03), 0.005, velocity=(3, 0, 0.5)), block("right", (0.022, 0, 0), (0.045, 0.03, 0.03),
-        0.004, velocity=(-3, 1, 0))]
-    return scene(800, 1e-5, contact, elements, domain={"remove_outside": True, "box": {"min": [-0.002, -0.002, -0.002], "max": [0.046, 0.032,
-        0.031]}},
-                 measure=[{"name": "outside", "count": {"above": {"x": 0.03}}}]), {}
+    elements = [
+        block("left", (0, 0, 0), (0.02, 0.03, 0.03), 0.005, velocity=(3, 0, 0.5)),
+        block("right", (0.022, 0, 0), (0.045, 0.03, 0.03), 0.004, velocity=(-3, 1, 0)),
+    ]
+    return (
+        scene(
+            800,
+            1e-5,
+            contact,
+            elements,
+            domain={
+                "remove_outside": True,
+                "box": {"min": [-0.002, -0.002, -0.002], "max": [0.046, 0.032, 0.031]},
+            },
+            measure=[{"name": "outside", "count": {"above": {"x": 0.03}}}],
+        ),
+        {},
+    )
 
 
 def apart(cases):
     """No contact laws at all, no walls: two clouds fly past each other."""
-    clouds = [block("there", (0, 0, 0), (0.02, 0.02, 0.02), 0.005, velocity=(2, 0, 0)), block("back", (0.03, 0.021, 0), (0.05, 0.041, 0.02),
-        0.005, velocity=(-2, 0, 0))]
+    clouds = [
+        block("there", (0, 0, 0), (0.02, 0.02, 0.02), 0.005, velocity=(2, 0, 0)),
+        block("back", (0.03, 0.021, 0), (0.05, 0.041, 0.02), 0.005, velocity=(-2, 0, 0)),
+    ]
     return scene(300, 1e-4, {}, clouds), {}
 
 
-def touching_csv(n, spacing, radii, origin, drift, seed=7):
-    """Spheres on a lattice n[0] x n[1] x n[2], radii in turn; with a spacing below the diameter they touch at the start. Drift, random velocities
-    and spins pull contacts apart and roll them."""
-    rng, rows = random.Random(seed), "x,y,z,radius,vx,vy,vz,wx,wy,wz\n"
-    for number, cell in enumerate((i, j, k) for i in range(n[0]) for j in range(n[1]) for k in range(n[2])):
-        values = [o + spacing * c for o, c in zip(origin, cell)] + [radii[number % len(radii)]]
-        values += [d + rng.gauss(0, 2) for d in drift] + [rng.gauss(0, 300) for _ in range(3)]
-        rows += ",".join("%.17g" % value for value in values) + "\n"
-    return rows
-
-
-def shutters(dt, steps):
-    """Plates far away that come and go: each makes the lists anew."""
-    return [{"name": f"shutter{step}", "surface": {"rectangle": {"center": [0, 0, -1], "normal": [0, 0, 1], "size": [0.01, 0.01]}},
-             "motion": {"remove_at" if step % 2 else "appear_at": step * dt}} for step in steps]
-
-
-def few(cases):
-    """Few elements, steps, many rebuilds: equal sizes, friction, bonds on moving planes, triangles, a rod, periodic, no account of energy."""
-    dt, radius = 2e-5, 0.0025
-    walls = [{"name": "floor", "surface": {"plane": {"point": [0, 0, 0], "normal": [0, 0, 1]}}, "motion": {"velocity": [1, 0, 0.5]}},
-             {"name": "rod", "surface": {"cylinder": {"from": [0.0285, -1, 0.005], "to": [0.0285, 1, 0.005], "radius": 0.004, "inside": False}}},
-             {"name": "sheet", "surface": {"stl": "sheet.stl"}}, *shutters(dt, (2, 5))]
-    contact = {"normal": LINEAR, "tangential": FRICTION, "binding": {"force": 1e-2}}
-    s = scene(8, dt, contact, [{"name": "few", "file": "few.csv"}], walls,
-              domain={"periodic": ["y"], "box": {"min": [-0.02, -0.0025, -0.02], "max": [0.04, 0.0123, 0.04]}})
-    s["measure"] = [{"name": name, "every": 8 * dt, "wall_force": name} for name in ("floor", "rod", "sheet")]
-    s["partition"] = {"every": 0}
-    return s, {"few.csv": touching_csv((5, 3, 1), 0.0049, [radius], (0.0002, 0, 0.00245), (30, 15, 0)),
-               "sheet.stl": sheet_stl(-0.003, 0.026, 1, lambda x, y: 0.0048 + 0.1 * x)}
-
-
-def mixed(cases):
-    """The same with Hertz, sizes and materials, rolling springs, bonds, a box and a tube, the account of energy; some leave the domain."""
-    dt = 1e-5
-    contact = {"normal": HERTZ, "tangential": {"damping_ratio": 0.2, "friction": 0.4},
-               "rolling": {"model": "epsd", "friction": 0.1, "damping_ratio": 0.3}, "binding": {"force": 2e-3}}
-    walls = [box("room", (-0.0028, -0.0028, 0.0002), (1, 1, 1)),
-             {"name": "tube", "surface": {"cylinder": {"from": [0.0098, 0.0049, -1], "to": [0.0098, 0.0049, 1], "radius": 0.0133}}},
-             {"name": "sheet", "surface": {"stl": "sheet.stl"}, "motion": {"rotation": {"center": [0, 0, 0], "axis": [0, 0, 1], "rate": 30}}},
-             *shutters(dt, (2, 7))]
-    elements = [{"name": "mixed", "file": "mixed.csv"}, {"name": "fast", "file": "fast.csv", "material": "steel"}]
-    s = scene(8, dt, contact, elements, walls, observe=1, output={"fields": ["velocity", "orientation"]},
-              domain={"remove_outside": True, "box": {"min": [-0.01, -0.01, -0.01], "max": [0.03, 0.03, 0.0123]}})
-    s["contacts"].append({"between": ["steel", "steel"], **contact})
-    s["partition"] = {"every": 0}
-    return s, {"mixed.csv": touching_csv((5, 3, 1), 0.0049, [0.0025, 0.0026, 0.002], (0, 0, 0.0025), (55, 3, -4)),
-               "fast.csv": "x,y,z,radius,vx,vy,vz\n0.006,0.004,0.0122,0.001,0,0,5\n0.0015,0.0045,0.0069,0.0015,0,0,-20\n",
-               "sheet.stl": sheet_stl(-0.012, 0.03, 1, lambda x, y: 0.0048 + 0.1 * x)}
-
-
-ALL = {"funnel": funnel, "column": column, "hertz": hertz, "gas_x": gas("x"), "gas_xy": gas("xy"), "gas_xyz": gas("xyz"), "shear": shear,
+ALL = {
+    "funnel": funnel,
+    "column": column,
+    "hertz": hertz,
+    "gas_x": gas("x"),
+    "gas_xy": gas("xy"),
+    "gas_xyz": gas("xyz"),
+    "shear": shear,
     "three": three,
-       "thin": thin, "moving": moving, "leaving": leaving, "apart": apart, "few": few, "mixed": mixed}
+    "thin": thin,
+    "moving": moving,
+    "leaving": leaving,
+    "apart": apart,
+    "few": few,
+    "mixed": mixed,
+}
 
 
 def write(scene_and_files, folder):

@@ -16,15 +16,32 @@ METHODS = ("geometric", "interactions", "graph")
 
 
 def keys(**partition):
-    return [arg for key, value in partition.items() for arg in ("--set", f"partition.{key}={value}")]
+    return [
+        arg for key, value in partition.items() for arg in ("--set", f"partition.{key}={value}")
+    ]
 
 
 class Partition(parallel_runs.Case):
     def found(self, run):
         record = run.record()
         frame = parallel_runs.frames.Frame(run.frames()[-1])
-        touching = sorted(zip(frame.field("id"), frame.field("coordination"))) if "coordination" in frame.names else None
-        same = [record[key] for key in ("digest", "steps", "dt_limit", "elements_removed", "rebuilds", "energy", "momentum")]
+        touching = (
+            sorted(zip(frame.field("id"), frame.field("coordination")))
+            if "coordination" in frame.names
+            else None
+        )
+        same = [
+            record[key]
+            for key in (
+                "digest",
+                "steps",
+                "dt_limit",
+                "elements_removed",
+                "rebuilds",
+                "energy",
+                "momentum",
+            )
+        ]
         return same, run.series(), run.contacts(), touching
 
     def work(self, record):
@@ -38,19 +55,29 @@ class Partition(parallel_runs.Case):
             record = run.record()
             self.assertEqual(record["partition"]["method"], partition["method"])
             self.assertEqual(record["plain_steps"]["allocations"], 0)
-            self.assertEqual(sum(rank["elements"] for rank in record["partition"]["ranks"]), record["elements"] - record["elements_removed"])
+            self.assertEqual(
+                sum(rank["elements"] for rank in record["partition"]["ranks"]),
+                record["elements"] - record["elements_removed"],
+            )
             return record
 
     def test_particles(self):
         """A column that collapses, with friction and bonds. Each method with each period, each of both with each number of ranks."""
         scene, dealt = self.scene("column"), {}
         alone = self.found(self.good_run(scene, 1))
-        for (m, method), (e, every) in itertools.product(enumerate(METHODS), enumerate((0, 37, "auto"))):
+        for (m, method), (e, every) in itertools.product(
+            enumerate(METHODS), enumerate((0, 37, "auto"))
+        ):
             ranks = 2 + (m + e) % 3
             record = self.check_same(scene, alone, ranks, method=method, every=every)
             dealt[every] = dealt.get(every, 0) + record["repartitions"]
             self.assertGreater(record["partition"]["cut"], 0)
-            self.assertTrue(1 <= record["partition"]["neighbours"]["mean"] <= record["partition"]["neighbours"]["max"] < ranks)
+            self.assertTrue(
+                1
+                <= record["partition"]["neighbours"]["mean"]
+                <= record["partition"]["neighbours"]["max"]
+                < ranks
+            )
             if every == 37:
                 self.assertGreater(record["migrations"], 0)
         self.assertEqual(dealt[0], 0)
@@ -68,13 +95,19 @@ class Partition(parallel_runs.Case):
         """Pairs of two ranks computed on one of them: friction, bonds, rolling, sizes, periodic faces, elements that leave. All ranks together
         compute what one does alone."""
         fields = ("--set", "output.fields=[coordination]")
-        for name, runs in (("column", (("geometric", 2, 0), ("graph", 3, 37), ("interactions", 8, "auto"))), ("hertz", (("graph", 4, 37),)),
-                           ("leaving", (("geometric", 3, 37),)), ("gas_xy", (("graph", 3, 37),))):
+        for name, runs in (
+            ("column", (("geometric", 2, 0), ("graph", 3, 37), ("interactions", 8, "auto"))),
+            ("hertz", (("graph", 4, 37),)),
+            ("leaving", (("geometric", 3, 37),)),
+            ("gas_xy", (("graph", 3, 37),)),
+        ):
             scene = self.scene(name)
             run = self.good_run(scene, 1, *fields)
             alone, work = self.found(run), self.work(run.record())
             for method, ranks, every in runs:
-                record = self.check_same(scene, alone, ranks, *fields, method=method, every=every, boundary="assigned")
+                record = self.check_same(
+                    scene, alone, ranks, *fields, method=method, every=every, boundary="assigned"
+                )
                 self.assertEqual(record["partition"]["boundary"], "assigned")
                 self.assertEqual(self.work(record), work)
                 self.assertGreater(record["partition"]["cut"], 0)
@@ -85,7 +118,10 @@ class Partition(parallel_runs.Case):
         record = run.record()
         with open(os.path.join(run.dir, "run.balance.csv")) as file:
             header, *lines = [line.strip().split(",") for line in file]
-        self.assertEqual(header, ["time [s]", "imbalance [1]", "work [1]", "cut [1]", "repartitions [1]", "moved [1]"])
+        self.assertEqual(
+            header,
+            ["time [s]", "imbalance [1]", "work [1]", "cut [1]", "repartitions [1]", "moved [1]"],
+        )
         self.assertEqual(len(lines), record["rebuilds"])
         self.assertEqual(int(lines[-1][4]), record["repartitions"])
         self.assertLessEqual(max(float(line[1]) for line in lines), record["imbalance"]["max"])
@@ -94,7 +130,9 @@ class Partition(parallel_runs.Case):
         """Elements are dealt out until the lists that steps go on with are shared out evenly enough, not those of before."""
         worst = {}
         for every in (0, 1):
-            run = self.good_run(self.scene("column"), 3, "--profile", *keys(every=every, threshold=0.04))
+            run = self.good_run(
+                self.scene("column"), 3, "--profile", *keys(every=every, threshold=0.04)
+            )
             with open(os.path.join(run.dir, "run.balance.csv")) as file:
                 worst[every] = max(float(line.split(",")[1]) for line in list(file)[1:])
             self.assertGreaterEqual(run.record()["imbalance"]["max"], worst[every])
@@ -104,9 +142,30 @@ class Partition(parallel_runs.Case):
     def unlike_run(self, scene, before, after, *args):
         """Two ranks, with words of their own before the program and after all others. Returns the record."""
         folder = os.path.join(self.dir, "unlike")
-        part = [["-n", "1", *before[r], parallel_runs.DEMOCLES, "run", scene, "-o", folder, "--force", "--quiet", *args, *after[r]] for r in range(2)]
-        run = subprocess.run([parallel_runs.MPIRUN, *parallel_runs.MPIRUN_ARGS, *part[0], ":", *part[1]], cwd=self.dir, capture_output=True,
-                             text=True, timeout=parallel_runs.HANG)
+        part = [
+            [
+                "-n",
+                "1",
+                *before[r],
+                parallel_runs.DEMOCLES,
+                "run",
+                scene,
+                "-o",
+                folder,
+                "--force",
+                "--quiet",
+                *args,
+                *after[r],
+            ]
+            for r in range(2)
+        ]
+        run = subprocess.run(
+            [parallel_runs.MPIRUN, *parallel_runs.MPIRUN_ARGS, *part[0], ":", *part[1]],
+            cwd=self.dir,
+            capture_output=True,
+            text=True,
+            timeout=parallel_runs.HANG,
+        )
         self.assertEqual(run.returncode, 0, run.stderr)
         return parallel_runs.Run(folder, 0, "").record()
 
@@ -114,12 +173,17 @@ class Partition(parallel_runs.Case):
         """Kernels that take longer and do the same."""
         folder = os.path.join(self.dir, "slow")
         shutil.copytree(os.path.join(os.path.dirname(parallel_runs.CASES), "kernels"), folder)
-        path, begin = os.path.join(folder, "particle", "gather.cl"), "    real4 f = (real4)(0), t = (real4)(0);\n"
+        path, begin = (
+            os.path.join(folder, "particle", "gather.cl"),
+            "    real4 f = (real4)(0), t = (real4)(0);\n",
+        )
         with open(path) as file:
             text = file.read()
         self.assertEqual(text.count(begin), 1)
-        waste = ("    real waste = (real)e;\n    for (int k = 0; k < 4000; k++) waste = waste * (real)0.999 + (real)1.5;\n"
-                 "    if (waste < 0) f.s0 = waste;\n")
+        waste = (
+            "    real waste = (real)e;\n    for (int k = 0; k < 4000; k++) waste = waste * (real)0.999 + (real)1.5;\n"
+            "    if (waste < 0) f.s0 = waste;\n"
+        )
         with open(path, "w") as file:
             file.write(text.replace(begin, begin + waste))
         return folder
@@ -132,7 +196,12 @@ class Partition(parallel_runs.Case):
         for method, rank in (("geometric", 0), ("graph", 1)):
             with self.subTest(method=method, slow=rank):
                 env = [["env", f"DEMOCLES_KERNELS={slow}"] if r == rank else [] for r in range(2)]
-                record = self.unlike_run(scene, env, [[], []], *keys(method=method, weights="measured", every=37, threshold=0))
+                record = self.unlike_run(
+                    scene,
+                    env,
+                    [[], []],
+                    *keys(method=method, weights="measured", every=37, threshold=0),
+                )
                 ranks = record["partition"]["ranks"]
                 self.assertEqual(record["digest"], alone)
                 self.assertLess(ranks[rank]["share"], 0.4)
@@ -142,7 +211,9 @@ class Partition(parallel_runs.Case):
         """One rank on pocl, one on Mesa's rusticl, which has no double precision: the bits of either alone, and the slower one gets less to do."""
         os.environ["RUSTICL_ENABLE"] = "llvmpipe"
         name = ["pthread", "llvmpipe"]
-        listed = subprocess.run([parallel_runs.DEMOCLES, "devices"], capture_output=True, text=True, check=True).stdout
+        listed = subprocess.run(
+            [parallel_runs.DEMOCLES, "devices"], capture_output=True, text=True, check=True
+        ).stdout
         index = [re.search(rf"^(\d+:\d+)\s+{kind}", listed, re.M) for kind in name]
         if not all(index):
             self.skipTest("there are no two implementations of OpenCL, pocl and rusticl")
@@ -159,7 +230,9 @@ class Partition(parallel_runs.Case):
             yaml.safe_dump(content, file)
         steps = ["--precision", "single", "--steps", "150"]
         digests = {self.good_run(scene, 1, *steps, *which).record()["digest"] for which in device}
-        record = self.unlike_run(scene, [[], []], device, *steps, *keys(weights="measured", every=37, threshold=0))
+        record = self.unlike_run(
+            scene, [[], []], device, *steps, *keys(weights="measured", every=37, threshold=0)
+        )
         self.assertEqual(digests, {record["digest"]})
         with open(os.path.join(self.dir, "unlike", "log.txt")) as file:
             log = file.read()
@@ -174,13 +247,23 @@ class Partition(parallel_runs.Case):
         with open(scene, "w") as file:
             yaml.safe_dump(lattice_runs.block("leapfrog"), file)
         alone = self.good_run(scene, 1, "--steps", "60").record()["digest"]
-        for method, ranks, weights in (("geometric", 2, "measured"), ("interactions", 3, "interactions"), ("graph", 2, "interactions"),
-                                       ("graph", 4, "interactions"), ("graph", 3, "measured")):
+        for method, ranks, weights in (
+            ("geometric", 2, "measured"),
+            ("interactions", 3, "interactions"),
+            ("graph", 2, "interactions"),
+            ("graph", 4, "interactions"),
+            ("graph", 3, "measured"),
+        ):
             with self.subTest(method=method, ranks=ranks, weights=weights):
-                record = self.good_run(scene, ranks, "--steps", "60", *keys(method=method, weights=weights)).record()
+                record = self.good_run(
+                    scene, ranks, "--steps", "60", *keys(method=method, weights=weights)
+                ).record()
                 self.assertEqual(record["digest"], alone)
                 self.assertGreater(record["partition"]["cut"], 0)
-                self.assertEqual(sum(rank["elements"] for rank in record["partition"]["ranks"]), record["elements"])
+                self.assertEqual(
+                    sum(rank["elements"] for rank in record["partition"]["ranks"]),
+                    record["elements"],
+                )
                 if weights == "interactions":
                     self.assertLess(record["imbalance"]["max"], 0.1)
 

@@ -17,14 +17,57 @@ from parallel_runs import frames
 
 # Tables of the state: what names a row, and all columns, of which a scene may lack some.
 TABLES = {
-    "elements": (("id",), ("position", "velocity", "angular_velocity", "orientation", "force", "torque", "reference", "reach")),
+    "elements": (
+        ("id",),
+        (
+            "position",
+            "velocity",
+            "angular_velocity",
+            "orientation",
+            "force",
+            "torque",
+            "reference",
+            "reach",
+        ),
+    ),
     "pairs": (("id", "partner"), ("state", "history", "ledger")),
     "wall_contacts": (("id", "primitive"), ("state", "history", "ledger")),
-    "cells": (("id",), ("displacement", "rotation", "velocity", "angular_velocity", "links", "fate", "velocity_before", "angular_velocity_before",
-                        "ledger", "fresh", "released")),
-    "measures": ((), ("left",)), "energy": ((), ("sum",)), "energy_start": ((), ("start",)), "totals": ((), ("number",))}
-SAME = ("digest", "steps", "time_end", "dt", "dt_limit", "elements", "elements_removed", "interactions", "rebuilds", "energy", "momentum", "broken",
-        "rest")
+    "cells": (
+        ("id",),
+        (
+            "displacement",
+            "rotation",
+            "velocity",
+            "angular_velocity",
+            "links",
+            "fate",
+            "velocity_before",
+            "angular_velocity_before",
+            "ledger",
+            "fresh",
+            "released",
+        ),
+    ),
+    "measures": ((), ("left",)),
+    "energy": ((), ("sum",)),
+    "energy_start": ((), ("start",)),
+    "totals": ((), ("number",)),
+}
+SAME = (
+    "digest",
+    "steps",
+    "time_end",
+    "dt",
+    "dt_limit",
+    "elements",
+    "elements_removed",
+    "interactions",
+    "rebuilds",
+    "energy",
+    "momentum",
+    "broken",
+    "rest",
+)
 
 
 def state(path):
@@ -43,8 +86,16 @@ def state(path):
 class Case(robust_jobs.Case):
     def resume(self, folder, ranks, *args, code=0, env=None):
         words = parallel_runs.command(ranks, "resume", folder, "--quiet", *args)
-        run = subprocess.run(words, cwd="/", stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
-                             timeout=parallel_runs.HANG, env={**os.environ, **(env or {})})
+        run = subprocess.run(
+            words,
+            cwd="/",
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+            timeout=parallel_runs.HANG,
+            env={**os.environ, **(env or {})},
+        )
         self.assertEqual(run.returncode, code, run.stderr)
         return parallel_runs.Run(folder, run.returncode, run.stderr)
 
@@ -74,18 +125,32 @@ class Particles(Case):
 
     def check(self, name, precision, stop, ranks, columns, boundary="both"):
         with self.subTest(scene=name, precision=precision):
-            scene, args = self.scene(name), ("--precision", precision, "--set", f"partition.boundary={boundary}")
+            scene, args = self.scene(name), (
+                "--precision",
+                precision,
+                "--set",
+                f"partition.boundary={boundary}",
+            )
             whole = self.good_run(scene, ranks[0], *args, name="whole")
             record, built_at = whole.record(), frames.attribute(whole.frames()[-1], "built_at")
             self.assertGreater(built_at - 1, stop)
-            found = self.same(whole, self.parts(scene, (stop, built_at - 1), record["steps"], ranks[1:], *args))
+            found = self.same(
+                whole, self.parts(scene, (stop, built_at - 1), record["steps"], ranks[1:], *args)
+            )
             for column in columns:
                 self.assertTrue(any(found[column]), column)
             return record
 
     def test_laws(self):
         self.check("column", "double", 150, (1, 1, 3, 2), ("pairs/history", "wall_contacts/ledger"))
-        self.check("hertz", "double", 133, (2, 3, 2, 1), ("pairs/history", "wall_contacts/history"), "assigned")
+        self.check(
+            "hertz",
+            "double",
+            133,
+            (2, 3, 2, 1),
+            ("pairs/history", "wall_contacts/history"),
+            "assigned",
+        )
         self.check("shear", "mixed", 255, (1, 1, 3, 2), ("pairs/history",))
 
     def test_places(self):
@@ -107,11 +172,17 @@ class Lattice(Case):
     def check(self, content, precision, steps, stops, ranks, **time):
         content["time"].update(time)
         if not any("energy" in m for m in content["measure"]):
-            content["measure"].append({"name": "energy", "every": content["measure"][0]["every"] * 3, "energy": "all"})
+            content["measure"].append(
+                {"name": "energy", "every": content["measure"][0]["every"] * 3, "energy": "all"}
+            )
         with self.subTest(scene=content["title"], precision=precision, **time):
             scene = self.put(content)
-            whole = self.good_run(scene, ranks[0], "--precision", precision, "--steps", str(steps), name="whole")
-            return whole, self.same(whole, self.parts(scene, stops, steps, ranks[1:], "--precision", precision))
+            whole = self.good_run(
+                scene, ranks[0], "--precision", precision, "--steps", str(steps), name="whole"
+            )
+            return whole, self.same(
+                whole, self.parts(scene, stops, steps, ranks[1:], "--precision", precision)
+            )
 
     def test_schemes(self):
         self.check(lattice_runs.plate(1), "double", 40, (13, 26), (1, 1, 3, 2))
@@ -119,14 +190,25 @@ class Lattice(Case):
 
     def test_breakage(self):
         for precision, scheme in (("double", "leapfrog"), ("single", "rkn4")):
-            whole, found = self.check(lattice_runs.torn(), precision, 300, (190, 240), (1, 1, 3, 2), scheme=scheme, step=1.5e-7)
+            whole, found = self.check(
+                lattice_runs.torn(),
+                precision,
+                300,
+                (190, 240),
+                (1, 1, 3, 2),
+                scheme=scheme,
+                step=1.5e-7,
+            )
             self.assertGreater(sum(whole.record()["broken"].values()), 10)
             self.assertTrue(any(found["cells/released"]))
 
     def test_damped_links(self):
         """Their forces are those of the velocities before the kick that ends a step."""
         content = lattice_runs.block("leapfrog")
-        content["materials"] = {name: {**material, "damping": {"link": 2e-8}} for name, material in content["materials"].items()}
+        content["materials"] = {
+            name: {**material, "damping": {"link": 2e-8}}
+            for name, material in content["materials"].items()
+        }
         content["lattice"] = {"rotation": "small"}
         self.check(content, "double", 40, (17,), (1, 2, 3))
 
@@ -156,14 +238,21 @@ class Killed(Case):
         run = self.resume(job.dir, 2, "--steps", end)
         self.assertEqual(run.record()["resumed"]["step"], steps[-1])
         self.same(whole, run)
-        self.assertEqual([frames.Frame(path).time for path in run.frames()], [frames.Frame(path).time for path in whole.frames()])
-        self.assertEqual(self.resume(job.dir, 1, "--steps", end).record()["digest"], whole.record()["digest"])  # with nothing left to do
+        self.assertEqual(
+            [frames.Frame(path).time for path in run.frames()],
+            [frames.Frame(path).time for path in whole.frames()],
+        )
+        self.assertEqual(
+            self.resume(job.dir, 1, "--steps", end).record()["digest"], whole.record()["digest"]
+        )  # with nothing left to do
 
 
 class Wrong(Case):
     def setUp(self):
         super().setUp()
-        self.whole_run = self.good_run(self.put(robust_jobs.bed(frame_every=20)), 1, "--steps", "50")
+        self.whole_run = self.good_run(
+            self.put(robust_jobs.bed(frame_every=20)), 1, "--steps", "50"
+        )
         self.end = self.whole_run.record()["digest"]
 
     def refused(self, says, *args, code=3, folder=None):
@@ -180,15 +269,25 @@ class Wrong(Case):
             data = file.read()
         half = len(data) // 2
         at = data.index(b"angular_velocity")
-        for damaged in (data[:half], b"", data[:half] + bytes([data[half] ^ 1]) + data[half + 1:], data[:at] + b"angular_velocitx" + data[at + 16:],
-                        b"no frame at all"):
+        for damaged in (
+            data[:half],
+            b"",
+            data[:half] + bytes([data[half] ^ 1]) + data[half + 1 :],
+            data[:at] + b"angular_velocitx" + data[at + 16 :],
+            b"no frame at all",
+        ):
             for ranks in (1, 3):
                 with open(self.whole_run.frames()[-1], "wb") as file:
                     file.write(damaged)
                 run = self.resume(self.whole_run.dir, ranks, "--steps", "50")
-                self.assertRegex(run.err, r"\Ademocles: warning: '\S*frame_000003.hdf' cannot be used: .*; trying the frame before it\n")
+                self.assertRegex(
+                    run.err,
+                    r"\Ademocles: warning: '\S*frame_000003.hdf' cannot be used: .*; trying the frame before it\n",
+                )
                 self.assertEqual(run.err.count("cannot be used"), 1)
-                self.assertEqual((run.record()["digest"], run.record()["resumed"]["step"]), (self.end, 40))
+                self.assertEqual(
+                    (run.record()["digest"], run.record()["resumed"]["step"]), (self.end, 40)
+                )
 
     def test_none_is_whole(self):
         for path in self.whole_run.frames():
@@ -198,6 +297,7 @@ class Wrong(Case):
 
     def test_versions(self):
         """Another version of the format, and a dataset less: no damage that a checksum could find."""
+
         def less(state):
             del state["elements/torque"]
 
@@ -205,7 +305,10 @@ class Wrong(Case):
             state.attrs["format_version"] = 99
 
         newest = self.whole_run.frames()[-1]
-        for change, says in ((less, r"it has \d+ of \d+ datasets"), (other_version, "its format version is 99, this program's")):
+        for change, says in (
+            (less, r"it has \d+ of \d+ datasets"),
+            (other_version, "its format version is 99, this program's"),
+        ):
             with h5py.File(newest, "r+") as file:
                 change(file["democles"])
             run = self.resume(self.whole_run.dir, 1, "--steps", "50")
@@ -230,23 +333,53 @@ class Wrong(Case):
         self.refused("few.csv", folder=os.path.join(self.dir, "few"))
 
     def test_what_cannot_change(self):
-        for key in ("time.step=1e-6", "gravity=[0, 0, 1]", "method=lattice", "elements[0].velocity=[0, 0, 0]", "precision=single", "time={end: 1}"):
+        for key in (
+            "time.step=1e-6",
+            "gravity=[0, 0, 1]",
+            "method=lattice",
+            "elements[0].velocity=[0, 0, 0]",
+            "precision=single",
+            "time={end: 1}",
+        ):
             self.refused("cannot change", "--set", key)
         self.refused("unknown key", "--set", "output.evry=1")
-        self.refused("step 50, after step 49, with which the run shall end", "--steps", "49", code=2)
+        self.refused(
+            "step 50, after step 49, with which the run shall end", "--steps", "49", code=2
+        )
         self.refused("step 50", "--set", "time.end=2e-4")
-        self.refused("energy.csv' has other columns", "--set", "measure[0]={name: energy, every: 1e-4, momentum: all}")
-        self.refused("orientation cannot be added to a restarted run", "--set", "output.fields=[orientation]")
+        self.refused(
+            "energy.csv' has other columns",
+            "--set",
+            "measure[0]={name: energy, every: 1e-4, momentum: all}",
+        )
+        self.refused(
+            "orientation cannot be added to a restarted run", "--set", "output.fields=[orientation]"
+        )
 
     def test_what_can_change(self):
         """More measures, other frames, another end, where files are; the bits stay."""
-        run = self.resume(self.whole_run.dir, 3, "--steps", "70", "--set", "output={every: 0.1, fields: [id]}", "--set", "partition.every=7", "--set",
-                          "measure=[{name: energy, every: 2e-3, energy: all}, {name: probe, every: 2e-4, probe: {element: 3}}]")
+        run = self.resume(
+            self.whole_run.dir,
+            3,
+            "--steps",
+            "70",
+            "--set",
+            "output={every: 0.1, fields: [id]}",
+            "--set",
+            "partition.every=7",
+            "--set",
+            "measure=[{name: energy, every: 2e-3, energy: all}, {name: probe, every: 2e-4, probe: {element: 3}}]",
+        )
         self.assertIn("probe.csv' is empty", run.err)
         self.assertEqual(len(run.series()["probe.csv"].splitlines()), 3)
         self.assertEqual(frames.scene(run.dir)["partition"]["every"], 7)
-        whole = self.good_run(self.put(robust_jobs.bed(frame_every=20)), 1, "--steps", "70", name="longer")
-        self.assertEqual((run.record()["digest"], run.record()["energy"]), (whole.record()["digest"], whole.record()["energy"]))
+        whole = self.good_run(
+            self.put(robust_jobs.bed(frame_every=20)), 1, "--steps", "70", name="longer"
+        )
+        self.assertEqual(
+            (run.record()["digest"], run.record()["energy"]),
+            (whole.record()["digest"], whole.record()["energy"]),
+        )
 
     def test_another_run(self):
         """Two runs never write into one folder; a run that was asked to stop by a file can go on."""

@@ -6,7 +6,7 @@ import shutil
 import subprocess
 
 import parallel_runs
-import parallel_scenes
+import scene_parts
 import robust_jobs
 
 
@@ -29,38 +29,65 @@ class Failures(robust_jobs.Case):
 class Numerics(Failures):
     def test_step_over_limit(self):
         """Two spheres that touch may take 2/sqrt(2k/m) = 5.7e-4 s, a bed that has come to rest less: the first is refused at once, the other then."""
-        contact = {"normal": {**parallel_scenes.LINEAR, "damping_ratio": 0}}
-        pair = parallel_scenes.scene(1000, 6e-4, contact, [{"name": "pair", "file": "pair.csv"}])
+        contact = {"normal": {**scene_parts.LINEAR, "damping_ratio": 0}}
+        pair = scene_parts.scene(1000, 6e-4, contact, [{"name": "pair", "file": "pair.csv"}])
         with open(os.path.join(self.dir, "pair.csv"), "w") as file:
             file.write("x,y,z,radius\n0,0,0,0.0025\n0.004999,0,0,0.0025\n")
-        fall = parallel_scenes.scene(2000, 5e-4, contact, [parallel_scenes.block("balls", (0, 0, 0), (0.02, 0.02, 0.03), 0.005)],
-                                     [parallel_scenes.box("room", (0, 0, 0), (0.02, 0.02, 0.1))])
+        fall = scene_parts.scene(
+            2000,
+            5e-4,
+            contact,
+            [scene_parts.block("balls", (0, 0, 0), (0.02, 0.02, 0.03), 0.005)],
+            [scene_parts.box("room", (0, 0, 0), (0.02, 0.02, 0.1))],
+        )
         fall["measure"] = []  # the budget of energy would find it first
         for ranks in (1, 3):
             for scene, when in ((pair, r"0, t = 0 s"), (fall, r"[1-9]\d*, t = \S+ s")):
-                run = self.fails(self.put(scene), ranks, 5, r"step " + when +
-                                 r": the time step 0\.000[56] s exceeds the critical time step .* element \d+")
+                run = self.fails(
+                    self.put(scene),
+                    ranks,
+                    5,
+                    r"step "
+                    + when
+                    + r": the time step 0\.000[56] s exceeds the critical time step .* element \d+",
+                )
                 record = self.failed_record(run, 5)
                 self.assertGreater(record["dt"], record["dt_limit"])
                 self.whole(run.dir)
 
     def test_energy_runs_away(self):
         """The same, seen by the budget of energy long before numbers end."""
-        contact = {"normal": {**parallel_scenes.LINEAR, "damping_ratio": 0}}
-        room = [parallel_scenes.box("room", (0, 0, 0), (0.03, 0.03, 0.03))]
-        packed = parallel_scenes.scene(200, 1.5e-3, contact, [parallel_scenes.block("packed", (0, 0, 0), (0.03, 0.03, 0.03), 0.005,
-            velocity=(1, 1, 1))], room, observe=50)
+        contact = {"normal": {**scene_parts.LINEAR, "damping_ratio": 0}}
+        room = [scene_parts.box("room", (0, 0, 0), (0.03, 0.03, 0.03))]
+        packed = scene_parts.scene(
+            200,
+            1.5e-3,
+            contact,
+            [scene_parts.block("packed", (0, 0, 0), (0.03, 0.03, 0.03), 0.005, velocity=(1, 1, 1))],
+            room,
+            observe=50,
+        )
         packed["time"]["allow_unstable"] = True
         for ranks in (1, 3):
-            run = self.fails(self.put(packed), ranks, 5, r"step \d+, .*: the energy is not a number, or too large to measure")
+            run = self.fails(
+                self.put(packed),
+                ranks,
+                5,
+                r"step \d+, .*: the energy is not a number, or too large to measure",
+            )
             self.failed_record(run, 5)
 
     def test_blow_up(self):
         """Some times the stable step: the run finds out by itself, and the frames until then stay."""
-        contact = {"normal": {**parallel_scenes.LINEAR, "damping_ratio": 0}}
-        room = [parallel_scenes.box("room", (0, 0, 0), (0.03, 0.03, 0.03))]
-        packed = parallel_scenes.scene(10**5, 1.5e-3, contact, [parallel_scenes.block("packed", (0, 0, 0), (0.03, 0.03, 0.03), 0.005,
-            velocity=(1, 1, 1))], room)
+        contact = {"normal": {**scene_parts.LINEAR, "damping_ratio": 0}}
+        room = [scene_parts.box("room", (0, 0, 0), (0.03, 0.03, 0.03))]
+        packed = scene_parts.scene(
+            10**5,
+            1.5e-3,
+            contact,
+            [scene_parts.block("packed", (0, 0, 0), (0.03, 0.03, 0.03), 0.005, velocity=(1, 1, 1))],
+            room,
+        )
         packed["time"]["allow_unstable"] = True
         packed["output"] = {"every": 0.015}
         packed["measure"] = []
@@ -70,7 +97,9 @@ class Numerics(Failures):
                 run = self.run_scene(self.put(packed), ranks, "--steps", "2000")
                 record = run.record()
                 if domain and run.code == 0:
-                    self.assertEqual((record["exit"], record["elements_removed"]), (0, record["elements"]))
+                    self.assertEqual(
+                        (record["exit"], record["elements_removed"]), (0, record["elements"])
+                    )
                 else:
                     self.assertEqual(run.code, 5, run.err)
                     self.assertRegex(run.err, r"(?m)^democles: error: step \d+, .*not numbers")
@@ -80,16 +109,31 @@ class Numerics(Failures):
 
     def test_nan_in_the_last_step(self):
         """Too few steps for the flags of the drift to be read: 1e-41 kg are no mass in single precision."""
-        dust = parallel_scenes.scene(3, 1e-5, {"normal": parallel_scenes.LINEAR}, [{"name": "dust", "file": "dust.csv", "velocity": [0, 0, 1]}])
+        dust = scene_parts.scene(
+            3,
+            1e-5,
+            {"normal": scene_parts.LINEAR},
+            [{"name": "dust", "file": "dust.csv", "velocity": [0, 0, 1]}],
+        )
         dust["measure"], dust["precision"] = [], "single"
         with open(os.path.join(self.dir, "dust.csv"), "w") as file:
             file.write("x,y,z,radius\n0,0,0,1e-18\n0,0,0.1,0.001\n")
         for ranks in (1, 3):
-            self.failed_record(self.fails(self.put(dust), ranks, 5, "step 3, t = 3e-05 s: the last state holds NaN"), 5)
+            self.failed_record(
+                self.fails(
+                    self.put(dust), ranks, 5, "step 3, t = 3e-05 s: the last state holds NaN"
+                ),
+                5,
+            )
 
     def test_lost_element(self):
-        free = parallel_scenes.scene(10**4, 1e-4, {}, [parallel_scenes.block("free", (0, 0, 0), (0.02, 0.02, 0.02), 0.005, velocity=(1, 0, 0))],
-                                     domain={"box": {"min": [-0.1, -0.1, -1], "max": [0.1, 0.1, 1]}})
+        free = scene_parts.scene(
+            10**4,
+            1e-4,
+            {},
+            [scene_parts.block("free", (0, 0, 0), (0.02, 0.02, 0.02), 0.005, velocity=(1, 0, 0))],
+            domain={"box": {"min": [-0.1, -0.1, -1], "max": [0.1, 0.1, 1]}},
+        )
         for ranks in (1, 3):
             run = self.fails(self.put(free), ranks, 5, r"step \d+, t = .*: .*element \d+ .*domain")
             self.failed_record(run, 5)
@@ -100,7 +144,9 @@ class Environment(Failures):
     def test_no_device(self):
         scene = self.put(robust_jobs.bed())
         for ranks in (1, 3):
-            run = self.fails(scene, ranks, 4, "no OpenCL device was found", env={"OCL_ICD_VENDORS": self.dir})
+            run = self.fails(
+                scene, ranks, 4, "no OpenCL device was found", env={"OCL_ICD_VENDORS": self.dir}
+            )
             self.assertFalse(os.path.exists(os.path.join(run.dir, "run.json")))
             self.fails(scene, ranks, 4, "no such thing", "--device", "no such thing")
 
@@ -111,16 +157,24 @@ class Environment(Failures):
         with open(os.path.join(folder, "particle", "gather.cl"), "a") as file:
             file.write("\nthis is no kernel\n")
         for ranks in (1, 3):
-            run = self.run_scene(self.put(robust_jobs.bed()), ranks, env={"DEMOCLES_KERNELS": folder, "TMPDIR": self.dir})
+            run = self.run_scene(
+                self.put(robust_jobs.bed()),
+                ranks,
+                env={"DEMOCLES_KERNELS": folder, "TMPDIR": self.dir},
+            )
             self.assertEqual(run.code, 4, run.err)
-            self.assertRegex(run.err, r"(?m)^democles: error: .*does not build on .*options: .*source: ")
+            self.assertRegex(
+                run.err, r"(?m)^democles: error: .*does not build on .*options: .*source: "
+            )
             self.assertRegex(run.err, r"gather\.cl:\d+:\d+: unknown type name 'this'")
 
     def test_file_size_limit(self):
         """As a disk that fills up while the run is under way: what was written before stays."""
         scene = self.put(robust_jobs.bed(frame_every=50))
         for ranks in (1, 3):
-            self.good_run(scene, ranks, "--steps", "1500", name="before")  # pocl writes kernels too, when they run for the first time
+            self.good_run(
+                scene, ranks, "--steps", "1500", name="before"
+            )  # pocl writes kernels too, when they run for the first time
             job = self.job(scene, ranks, name=f"out{ranks}")
             job.wait_frames(2)
             limit = os.path.getsize(job.frames()[0]) // 2
@@ -128,7 +182,9 @@ class Environment(Failures):
                 resource.prlimit(pid, resource.RLIMIT_FSIZE, (limit, limit))
             self.assertEqual(job.end(), 6, job.err())
             self.assertEqual(len(job.errors()), 1, job.err())
-            self.assertRegex(job.errors()[0], r"(frame_\d+\.hdf|energy\.csv|log\.txt).*: File too large")
+            self.assertRegex(
+                job.errors()[0], r"(frame_\d+\.hdf|energy\.csv|log\.txt).*: File too large"
+            )
             self.assertEqual(self.leftovers(job.dir), [])
             self.assertGreaterEqual(self.whole(job.dir), 2)
 
@@ -136,7 +192,9 @@ class Environment(Failures):
         """Where a small file system may be mounted."""
         disk, scene = os.path.join(self.dir, "disk"), self.put(robust_jobs.bed(frame_every=50))
         os.mkdir(disk)
-        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=2m", "tmpfs", disk], capture_output=True).returncode:
+        if subprocess.run(
+            ["mount", "-t", "tmpfs", "-o", "size=2m", "tmpfs", disk], capture_output=True
+        ).returncode:
             self.skipTest("no right to mount")
         try:
             for ranks in (1, 3):
@@ -151,8 +209,13 @@ class Environment(Failures):
         with open(os.path.join(self.dir, "file"), "w"):
             pass
         for ranks in (1, 3):
-            run = subprocess.run(parallel_runs.command(ranks, "run", "scene.yaml", "-o", "file/out"), cwd=self.dir, capture_output=True, text=True,
-                                 timeout=parallel_runs.HANG)
+            run = subprocess.run(
+                parallel_runs.command(ranks, "run", "scene.yaml", "-o", "file/out"),
+                cwd=self.dir,
+                capture_output=True,
+                text=True,
+                timeout=parallel_runs.HANG,
+            )
             self.assertEqual(run.returncode, 6, run.stderr)
             self.assertEqual(run.stderr.count("democles: error: "), 1)
 

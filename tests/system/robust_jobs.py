@@ -8,17 +8,25 @@ import subprocess
 import time
 
 import parallel_runs
-import parallel_scenes
+import scene_parts
 from parallel_runs import mpi
 
-SOON = 60  # seconds within which a job has to end once somebody wants it to; the machine may be busy
+SOON = (
+    60  # seconds within which a job has to end once somebody wants it to; the machine may be busy
+)
 
 
 def bed(steps=10**7, dt=2e-5, frame_every=200, **more):
     """Elements thrown into a box: runs for as long as nobody stops it."""
-    contact = {"normal": parallel_scenes.LINEAR, "tangential": parallel_scenes.FRICTION}
-    s = parallel_scenes.scene(steps, dt, contact, [parallel_scenes.block("bed", (0, 0, 0), (0.04, 0.03, 0.03), 0.005, velocity=(0.5, 0, -0.5))],
-                              [parallel_scenes.box("trough", (0, 0, 0), (0.04, 0.03, 0.1))], **more)
+    contact = {"normal": scene_parts.LINEAR, "tangential": scene_parts.FRICTION}
+    s = scene_parts.scene(
+        steps,
+        dt,
+        contact,
+        [scene_parts.block("bed", (0, 0, 0), (0.04, 0.03, 0.03), 0.005, velocity=(0.5, 0, -0.5))],
+        [scene_parts.box("trough", (0, 0, 0), (0.04, 0.03, 0.1))],
+        **more,
+    )
     s["output"] = {"every": frame_every * dt, "fields": ["velocity", "radius", "coordination"]}
     s["measure"] = [{"name": "energy", "every": 100 * dt, "energy": "all"}]
     return s
@@ -33,8 +41,15 @@ class Job:
         shutil.rmtree(self.dir, True)
         with open(self.log, "w") as err:
             words = parallel_runs.command(ranks, "run", scene, "-o", self.dir, "--quiet", *args)
-            self.process = subprocess.Popen(words, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=err,
-                                            start_new_session=True, **more)
+            self.process = subprocess.Popen(
+                words,
+                cwd=folder,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=err,
+                start_new_session=True,
+                **more,
+            )
 
     def pids(self):
         """Rank -> process id."""
@@ -44,9 +59,15 @@ class Job:
         for path in glob.glob("/proc/[0-9]*/environ"):
             try:
                 with open(path, "rb") as file:
-                    environ = dict(word.split(b"=", 1) for word in file.read().split(b"\0") if b"=" in word)
+                    environ = dict(
+                        word.split(b"=", 1) for word in file.read().split(b"\0") if b"=" in word
+                    )
                 pid = int(path.split("/")[2])
-                if self.owns(pid) and os.readlink(f"/proc/{pid}/exe") == parallel_runs.DEMOCLES and variable in environ:
+                if (
+                    self.owns(pid)
+                    and os.readlink(f"/proc/{pid}/exe") == parallel_runs.DEMOCLES
+                    and variable in environ
+                ):
                     found[int(environ[variable])] = pid
             except (OSError, ProcessLookupError):
                 continue
@@ -80,12 +101,19 @@ class Job:
     def owns(self, pid):
         """Whether a process is of this job: in its session, or, since MPICH gives each rank one of its own, named by its folder."""
         with open(f"/proc/{pid}/cmdline", "rb") as file:
-            return os.getsid(pid) == self.process.pid or os.fsencode(self.dir) in file.read().split(b"\0")
+            return os.getsid(pid) == self.process.pid or os.fsencode(self.dir) in file.read().split(
+                b"\0"
+            )
 
     def alive(self):
         """Whether any process of the job is still there."""
-        return any(self.owns(int(p.split("/")[2])) for p in glob.glob("/proc/[0-9]*") if os.path.exists(p)
-                   and int(p.split("/")[2]) != self.process.pid and _state(p) not in "ZX")
+        return any(
+            self.owns(int(p.split("/")[2]))
+            for p in glob.glob("/proc/[0-9]*")
+            if os.path.exists(p)
+            and int(p.split("/")[2]) != self.process.pid
+            and _state(p) not in "ZX"
+        )
 
     def err(self):
         with open(self.log) as file:
@@ -106,6 +134,7 @@ def _state(proc):
 class Case(parallel_runs.Case):
     def put(self, content):
         import yaml
+
         path = os.path.join(self.dir, "scene.yaml")
         with open(path, "w") as file:
             yaml.safe_dump(content, file)
@@ -113,16 +142,27 @@ class Case(parallel_runs.Case):
 
     def job(self, scene, ranks, *args, **more):
         job = Job(self.dir, scene, ranks, *args, **more)
-        self.addCleanup(lambda: job.process.poll() is None and os.killpg(job.process.pid, signal.SIGKILL))
+        self.addCleanup(
+            lambda: job.process.poll() is None and os.killpg(job.process.pid, signal.SIGKILL)
+        )
         return job
 
     def whole(self, folder):
         """All frames of a folder are complete; returns how many there are."""
         paths = sorted(glob.glob(os.path.join(folder, "frame_*.hdf")))
         for path in paths:
-            run = subprocess.run([parallel_runs.OWN[0], "check", path], capture_output=True, text=True, timeout=parallel_runs.HANG)
+            run = subprocess.run(
+                [parallel_runs.OWN[0], "check", path],
+                capture_output=True,
+                text=True,
+                timeout=parallel_runs.HANG,
+            )
             self.assertEqual((run.returncode, run.stdout), (0, ""), path)
         return len(paths)
 
     def leftovers(self, folder):
-        return [name for name in os.listdir(folder) if name.endswith(".tmp")] if os.path.isdir(folder) else []
+        return (
+            [name for name in os.listdir(folder) if name.endswith(".tmp")]
+            if os.path.isdir(folder)
+            else []
+        )

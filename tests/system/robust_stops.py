@@ -30,7 +30,12 @@ class Asked(robust_jobs.Case):
         self.assertEqual(again.record()["digest"], record["digest"])
 
     def test_signal_at_one_rank(self):
-        for ranks, rank, number in ((1, 0, signal.SIGTERM), (3, 2, signal.SIGTERM), (3, 0, signal.SIGUSR1), (3, 1, signal.SIGINT)):
+        for ranks, rank, number in (
+            (1, 0, signal.SIGTERM),
+            (3, 2, signal.SIGTERM),
+            (3, 0, signal.SIGUSR1),
+            (3, 1, signal.SIGINT),
+        ):
             with self.subTest(ranks=ranks, rank=rank, signal=number):
                 self.stopped(ranks, lambda job: job.signal(number, rank))
 

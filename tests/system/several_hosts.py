@@ -18,18 +18,49 @@ NET = "10.77.0"
 HANG = 240  # [s]
 TOOLS = ("ip", "unshare", "nsenter", "mount")
 # Inside /mnt, a file system that ends with the namespace: the program, what each host gets a copy of, and the results.
-PROGRAM, STAGE, SHARED, AGENT, HOSTS = "/mnt/democles", "/mnt/stage", "/mnt/shared", "/mnt/agent", "/mnt/hosts"
+PROGRAM, STAGE, SHARED, AGENT, HOSTS = (
+    "/mnt/democles",
+    "/mnt/stage",
+    "/mnt/shared",
+    "/mnt/agent",
+    "/mnt/hosts",
+)
 
 LATTICE = {
-    "title": "bar", "method": "lattice", "time": {"end": 1e-4, "scheme": "leapfrog"}, "lattice": {"rotation": "small"},
-    "materials": {"m": {"density": 2700, "young": 70e9, "poisson": 0.3}}, "output": {"every": 0},
-    "bodies": [{"name": "bar", "material": "m", "cell": 0.01, "velocity": [1, 0, 0], "shape": {"box": {"min": [0, 0, 0], "max": [0.3, 0.05, 0.05]}}}],
-    "boundaries": [{"where": {"box": {"min": [-1, -1, -1], "max": [0.005, 1, 1]}}, "fix": ["x", "y", "z"]}]}
+    "title": "bar",
+    "method": "lattice",
+    "time": {"end": 1e-4, "scheme": "leapfrog"},
+    "lattice": {"rotation": "small"},
+    "materials": {"m": {"density": 2700, "young": 70e9, "poisson": 0.3}},
+    "output": {"every": 0},
+    "bodies": [
+        {
+            "name": "bar",
+            "material": "m",
+            "cell": 0.01,
+            "velocity": [1, 0, 0],
+            "shape": {"box": {"min": [0, 0, 0], "max": [0.3, 0.05, 0.05]}},
+        }
+    ],
+    "boundaries": [
+        {"where": {"box": {"min": [-1, -1, -1], "max": [0.005, 1, 1]}}, "fix": ["x", "y", "z"]}
+    ],
+}
 
 
 def unshare():
     user = ["--map-root-user"] if os.getuid() else []
-    return ["unshare", *user, "--net", "--mount", "--uts", "--pid", "--fork", "--kill-child", "--mount-proc"]
+    return [
+        "unshare",
+        *user,
+        "--net",
+        "--mount",
+        "--uts",
+        "--pid",
+        "--fork",
+        "--kill-child",
+        "--mount-proc",
+    ]
 
 
 def why_not():
@@ -41,7 +72,9 @@ def why_not():
         return "mpirun is not Open MPI's"
     probe = "mount -t tmpfs none /mnt && ip link add probe type bridge && ip link add one type veth peer name two && hostname probe"
     try:
-        run = subprocess.run([*unshare(), "sh", "-c", probe], capture_output=True, text=True, timeout=60)
+        run = subprocess.run(
+            [*unshare(), "sh", "-c", probe], capture_output=True, text=True, timeout=60
+        )
     except subprocess.TimeoutExpired:
         return "a namespace does not answer"
     return f"namespaces are not permitted: {run.stderr.strip()}" if run.returncode else None
@@ -59,13 +92,31 @@ def write(path, text):
 
 def start_host(k):
     """A host that sleeps, with its own copy of the stage in its own /tmp."""
-    script = (f"mount -t tmpfs none /tmp && mount -t tmpfs none /dev/shm && cp -r {STAGE}/. /tmp && umount {STAGE} && hostname host{k} && "
-              "echo ready && exec sleep 1000")
-    host = subprocess.Popen(["unshare", "--net", "--mount", "--uts", "sh", "-c", script], stdout=subprocess.PIPE, text=True)
+    script = (
+        f"mount -t tmpfs none /tmp && mount -t tmpfs none /dev/shm && cp -r {STAGE}/. /tmp && umount {STAGE} && hostname host{k} && "
+        "echo ready && exec sleep 1000"
+    )
+    host = subprocess.Popen(
+        ["unshare", "--net", "--mount", "--uts", "sh", "-c", script],
+        stdout=subprocess.PIPE,
+        text=True,
+    )
     if host.stdout.readline() != "ready\n":
         sys.exit(f"host {k} does not start")
     inside = ["nsenter", "-t", str(host.pid), "--net"]
-    call("ip", "link", "add", f"port{k}", "type", "veth", "peer", "name", "eth0", "netns", str(host.pid))
+    call(
+        "ip",
+        "link",
+        "add",
+        f"port{k}",
+        "type",
+        "veth",
+        "peer",
+        "name",
+        "eth0",
+        "netns",
+        str(host.pid),
+    )
     call("ip", "link", "set", f"port{k}", "master", "bridge", "up")
     call(*inside, "ip", "link", "set", "lo", "up")
     call(*inside, "ip", "address", "add", f"{NET}.{k}/24", "dev", "eth0")
@@ -87,16 +138,30 @@ def inside(program, stage, shared, slots, args):
     call("ip", "link", "add", "bridge", "type", "bridge")
     call("ip", "address", "add", f"{NET}.100/24", "dev", "bridge")
     call("ip", "link", "set", "bridge", "up")
-    write(AGENT, f'#!/bin/sh\nhost=$1\nshift\nexec nsenter -t "$(cat {HOSTS}/"$host")" --net --mount --uts --wd=/ sh -c "$*"\n')  # what ssh does
+    write(
+        AGENT,
+        f'#!/bin/sh\nhost=$1\nshift\nexec nsenter -t "$(cat {HOSTS}/"$host")" --net --mount --uts --wd=/ sh -c "$*"\n',
+    )  # what ssh does
     for k in range(1, len(slots) + 1):
         start_host(k)
     call("umount", STAGE)
     call("mount", "-t", "tmpfs", "none", "/tmp")
     os.chdir("/")
-    env = {**parallel_runs.mpi.environment(), "TMPDIR": "/tmp", "HOME": "/tmp", "POCL_CACHE_DIR": "/tmp/kernels"}
+    env = {
+        **parallel_runs.mpi.environment(),
+        "TMPDIR": "/tmp",
+        "HOME": "/tmp",
+        "POCL_CACHE_DIR": "/tmp/kernels",
+    }
     hosts = ",".join(f"{NET}.{k}:{n}" for k, n in enumerate(slots, 1))
-    over_tcp = {"btl": "tcp,self", "btl_tcp_if_include": f"{NET}.0/24", "oob_tcp_if_include": f"{NET}.0/24", "plm": "rsh", "plm_rsh_agent": AGENT,
-                "plm_rsh_no_tree_spawn": "1"}
+    over_tcp = {
+        "btl": "tcp,self",
+        "btl_tcp_if_include": f"{NET}.0/24",
+        "oob_tcp_if_include": f"{NET}.0/24",
+        "plm": "rsh",
+        "plm_rsh_agent": AGENT,
+        "plm_rsh_no_tree_spawn": "1",
+    }
     command = parallel_runs.mpi.command("--host", hosts, "-n", str(sum(slots)))
     for name, value in over_tcp.items():
         command += ["--mca", name, value]
@@ -120,8 +185,17 @@ class Hosts(parallel_runs.Case):
         scene = parallel_scenes.write(content, os.path.join(stage, "scene"))
         alone = self.good_run(scene, 1, *args, name="alone", env={"POCL_CACHE_DIR": self.kernels})
         shutil.copytree(self.kernels, os.path.join(stage, "kernels"))  # only to save time
-        command = [*unshare(), sys.executable, os.path.abspath(__file__), "--inside", parallel_runs.DEMOCLES, stage, shared, json.dumps(slots),
-                   json.dumps([*args, "--quiet", "--trace-from", "2", "--trace-steps", "4"])]
+        command = [
+            *unshare(),
+            sys.executable,
+            os.path.abspath(__file__),
+            "--inside",
+            parallel_runs.DEMOCLES,
+            stage,
+            shared,
+            json.dumps(slots),
+            json.dumps([*args, "--quiet", "--trace-from", "2", "--trace-steps", "4"]),
+        ]
         done = subprocess.run(command, capture_output=True, text=True, timeout=HANG)
         self.assertEqual(done.returncode, 0, done.stderr)
         run = parallel_runs.Run(os.path.join(shared, "out"), 0, done.stderr)
@@ -133,7 +207,11 @@ class Hosts(parallel_runs.Case):
         self.assertEqual(len(run.frames()), len(alone.frames()))
         self.assertGreater(record["halo_bytes_per_step"], 0)
         with open(os.path.join(run.dir, "trace.json")) as file:
-            names = {e["pid"]: e["args"]["name"] for e in json.load(file)["traceEvents"] if e["name"] == "process_name"}
+            names = {
+                e["pid"]: e["args"]["name"]
+                for e in json.load(file)["traceEvents"]
+                if e["name"] == "process_name"
+            }
         hosts = [k for k, n in enumerate(slots, 1) for _ in range(n)]
         for rank, host in enumerate(hosts):
             self.assertTrue(names[rank].startswith(f"rank {rank} on host{host}:"), names)

@@ -15,7 +15,9 @@ NO_LEAKS = {"ASAN_OPTIONS": "detect_leaks=0"}
 
 class Short(robust_jobs.Case):
     def is_quiet(self, err):
-        self.assertEqual([line for line in cli.own_lines(err) if not line.startswith("democles: warning: ")], [])
+        self.assertEqual(
+            [line for line in cli.own_lines(err) if not line.startswith("democles: warning: ")], []
+        )
 
     def runs(self, name, steps):
         scene = self.scene(name)
@@ -23,7 +25,9 @@ class Short(robust_jobs.Case):
         self.assertGreater(first.record()["rebuilds"], 0)
         for ranks in (1, 3):
             with self.subTest(ranks=ranks):
-                run = self.good_run(scene, ranks, "--steps", str(steps), env=NO_LEAKS if ranks > 1 else None)
+                run = self.good_run(
+                    scene, ranks, "--steps", str(steps), env=NO_LEAKS if ranks > 1 else None
+                )
                 self.is_quiet(run.err)
                 self.assertEqual(run.record()["digest"], first.record()["digest"])
         return first
@@ -31,12 +35,16 @@ class Short(robust_jobs.Case):
     def test_few(self):
         run = self.runs("few", 8)
         for wall in ("floor", "rod", "sheet"):
-            contacts = [line.split(",")[-1] for line in run.series()[wall + ".csv"].splitlines()[1:]]
+            contacts = [
+                line.split(",")[-1] for line in run.series()[wall + ".csv"].splitlines()[1:]
+            ]
             self.assertNotEqual(set(contacts), {"0"}, wall)
 
     def test_mixed(self):
         record = self.runs("mixed", 8).record()
-        self.assertEqual((record["elements_removed"], record["elements_left"]), (1, 1))  # one name, and that of 0.1
+        self.assertEqual(
+            (record["elements_removed"], record["elements_left"]), (1, 1)
+        )  # one name, and that of 0.1
         for term, value in record["energy"]["end"].items():
             self.assertNotEqual(value, 0, term)
 

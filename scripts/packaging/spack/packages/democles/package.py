@@ -13,7 +13,11 @@ class Democles(MesonPackage):
 
     variant("metis", default=True, description="graph partitions")
     variant("tools", default=True, description="Python tools for pictures, plots and studies")
-    variant("pocl", default=True, description="an OpenCL device on the processor; GPUs bring their own driver")
+    variant(
+        "pocl",
+        default=True,
+        description="an OpenCL device on the processor; GPUs bring their own driver",
+    )
 
     depends_on("c", type="build")
     depends_on("meson@1.0:", type="build")
@@ -36,7 +40,13 @@ class Democles(MesonPackage):
     def meson_args(self):
         def feature(name):
             return f"-D{name}={'enabled' if self.spec.satisfies('+' + name) else 'disabled'}"
-        arguments = ["-Dtests=disabled", feature("metis"), feature("tools"), f"-Dhdf5={self.spec['hdf5'].prefix.bin.h5pcc}"]
+
+        arguments = [
+            "-Dtests=disabled",
+            feature("metis"),
+            feature("tools"),
+            f"-Dhdf5={self.spec['hdf5'].prefix.bin.h5pcc}",
+        ]
         if self.spec.satisfies("+tools"):
             arguments.append(f"-Dpython={self.spec['python'].command.path}")
         return arguments
