@@ -4,11 +4,9 @@
     scripts/render.py DIR --frame last       DIR/frame_000123.png: one frame, by number, `first` or `last`
     scripts/render.py DIR --film             DIR/film.mp4: all frames
 
-Works without a display (it starts itself again under xvfb-run)."""
+Works without a display (it starts one, Xvfb)."""
 import argparse
 import math
-import os
-import shutil
 import sys
 
 
@@ -87,20 +85,12 @@ def arguments():
     return parser.parse_args()
 
 
-def ensure_display():
-    """VTK of Debian 12 draws through X only."""
-    if os.environ.get("DISPLAY"):
-        return
-    if os.environ.get("DEMOCLES_RENDER_XVFB") or not shutil.which("xvfb-run"):
-        sys.exit("render: no display; install xvfb and xauth (scripts/setup does)")
-    os.environ["DEMOCLES_RENDER_XVFB"] = "1"
-    screen = ["xvfb-run", "-a", "-s", "-screen 0 1280x1024x24"]
-    os.execvp(screen[0], screen + [sys.executable, os.path.abspath(sys.argv[0]), *sys.argv[1:]])
-
-
 def main():
     options = arguments()
-    ensure_display()
-    from democles import render_picture  # nothing heavy before the second start
+    from democles import display, render_picture  # nothing heavy before the arguments are read
+
+    missing = display.ensure()
+    if missing:
+        sys.exit("render: " + missing)
 
     print(render_picture.draw(options))

@@ -7,6 +7,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,7 +40,9 @@ static void insist(const struct h5_writer *writer, bool ok, const char *call, co
     double free_bytes = statvfs(writer->tmp, &disk) == 0
                             ? (double)disk.f_bavail * (double)disk.f_frsize
                             : (double)NAN;
-    usleep(500000U * (unsigned)(writer->comm->rank < 10 ? writer->comm->rank : 10));
+    /* mpirun ends ranks by SIGTERM first, which would be a request to stop */
+    signal(SIGTERM, SIG_DFL);
+    sleep(writer->comm->rank < 10 ? (unsigned)writer->comm->rank : 10);
     unlink(writer->tmp);
     fail_stop(EXIT_IO, "cannot write '%s': %s%s: %s%s (%.1f MB are free there)", writer->path, call,
         name, reason, system, 1e-6 * free_bytes);

@@ -239,10 +239,12 @@ static void vefrl(void **state)
         4e-4, 4);
 }
 
-int main(void)
+/* Argument: none, or schemes for those that are not the default and what they share. */
+int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(pulled_cell), cmocka_unit_test(led_cell),
-        cmocka_unit_test(dashpot), cmocka_unit_test(leapfrog), cmocka_unit_test(rk4),
+    const struct CMUnitTest some[] = {cmocka_unit_test(pulled_cell), cmocka_unit_test(led_cell),
+        cmocka_unit_test(dashpot), cmocka_unit_test(leapfrog), cmocka_unit_test(rk4)};
+    const struct CMUnitTest more[] = {
         cmocka_unit_test(rkn4), cmocka_unit_test(pefrl), cmocka_unit_test(vefrl)};
-    return DEVICE_TESTS(tests);
+    return argc > 1 && strcmp(argv[1], "schemes") == 0 ? DEVICE_TESTS(more) : DEVICE_TESTS(some);
 }

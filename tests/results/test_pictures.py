@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """scripts/render.py and scripts/plot.py: walls where and when they are, spheres of their size and colour, pictures and films of a run.
 
-Argument: results_tool. Called by meson; starts itself again under xvfb-run where there is no display."""
+Argument: results_tool. Called by meson."""
 import math
 import os
 import pathlib
@@ -13,26 +13,11 @@ import unittest
 
 SCRIPTS = pathlib.Path(__file__).resolve().parent.parent.parent / "scripts"
 TOOL = sys.argv.pop(1)
-if not os.environ.get("DISPLAY"):
-    os.execvp(
-        "xvfb-run",
-        [
-            "xvfb-run",
-            "-a",
-            "-s",
-            "-screen 0 1280x1024x24",
-            sys.executable,
-            *sys.argv[:1],
-            TOOL,
-            *sys.argv[1:],
-        ],
-    )
-
 sys.path.insert(0, str(SCRIPTS))
 import numpy  # noqa: E402
 from matplotlib import pyplot  # noqa: E402
 
-from democles import frames, plot, render_picture, render_view, render_walls  # noqa: E402
+from democles import display, frames, plot, render_picture, render_view, render_walls  # noqa: E402
 
 SCENE = """title: "three spheres"
 gravity: [0, 0, -9.81]
@@ -345,4 +330,7 @@ class Folder(unittest.TestCase):
 
 
 if __name__ == "__main__":
+    missing = display.ensure()
+    if missing:
+        sys.exit(missing)
     unittest.main(verbosity=2)

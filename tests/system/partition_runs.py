@@ -62,13 +62,20 @@ class Partition(parallel_runs.Case):
             return record
 
     def test_particles(self):
-        """A column that collapses, with friction and bonds. Each method with each period, each of both with each number of ranks."""
-        scene, dealt = self.scene("column"), {}
+        """A column that collapses, with friction and bonds. Each method, each period and each
+        number of ranks once."""
+        self.deal((m, m) for m in range(3))
+
+    def test_particles_all(self):
+        """Each method with each period, each of both with each number of ranks."""
+        self.deal(itertools.product(range(3), range(3)))
+
+    def deal(self, pairs):
+        """pairs: of numbers of methods and periods."""
+        scene, dealt, periods = self.scene("column"), {}, (0, 37, "auto")
         alone = self.found(self.good_run(scene, 1))
-        for (m, method), (e, every) in itertools.product(
-            enumerate(METHODS), enumerate((0, 37, "auto"))
-        ):
-            ranks = 2 + (m + e) % 3
+        for m, e in pairs:
+            method, every, ranks = METHODS[m], periods[e], 2 + (m + e) % 3
             record = self.check_same(scene, alone, ranks, method=method, every=every)
             dealt[every] = dealt.get(every, 0) + record["repartitions"]
             self.assertGreater(record["partition"]["cut"], 0)
@@ -94,13 +101,23 @@ class Partition(parallel_runs.Case):
     def test_assigned(self):
         """Pairs of two ranks computed on one of them: friction, bonds, rolling, sizes, periodic faces, elements that leave. All ranks together
         compute what one does alone."""
-        fields = ("--set", "output.fields=[coordination]")
-        for name, runs in (
-            ("column", (("geometric", 2, 0), ("graph", 3, 37), ("interactions", 8, "auto"))),
+        self.assigned(
+            ("column", (("geometric", 2, 0), ("graph", 3, 37))),
+            ("leaving", (("interactions", 3, 37),)),
+        )
+
+    def test_assigned_all(self):
+        self.assigned(
+            ("column", (("interactions", 8, "auto"),)),
             ("hertz", (("graph", 4, 37),)),
             ("leaving", (("geometric", 3, 37),)),
             ("gas_xy", (("graph", 3, 37),)),
-        ):
+        )
+
+    def assigned(self, *scenes):
+        """scenes: (name, ((method, ranks, period), ...)), ..."""
+        fields = ("--set", "output.fields=[coordination]")
+        for name, runs in scenes:
             scene = self.scene(name)
             run = self.good_run(scene, 1, *fields)
             alone, work = self.found(run), self.work(run.record())

@@ -68,14 +68,13 @@ class Numerics(Failures):
             observe=50,
         )
         packed["time"]["allow_unstable"] = True
-        for ranks in (1, 3):
-            run = self.fails(
-                self.put(packed),
-                ranks,
-                5,
-                r"step \d+, .*: the energy is not a number, or too large to measure",
-            )
-            self.failed_record(run, 5)
+        run = self.fails(
+            self.put(packed),
+            3,
+            5,
+            r"step \d+, .*: the energy is not a number, or too large to measure",
+        )
+        self.failed_record(run, 5)
 
     def test_blow_up(self):
         """Some times the stable step: the run finds out by itself, and the frames until then stay."""
@@ -91,8 +90,8 @@ class Numerics(Failures):
         packed["time"]["allow_unstable"] = True
         packed["output"] = {"every": 0.015}
         packed["measure"] = []
-        for ranks in (1, 3):
-            for domain in ({}, {"remove_outside": True}):
+        for ranks, domain in ((1, {}), (3, {}), (3, {"remove_outside": True})):
+            with self.subTest(ranks=ranks, domain=domain):
                 packed["domain"] = domain
                 run = self.run_scene(self.put(packed), ranks, "--steps", "2000")
                 record = run.record()
@@ -118,13 +117,8 @@ class Numerics(Failures):
         dust["measure"], dust["precision"] = [], "single"
         with open(os.path.join(self.dir, "dust.csv"), "w") as file:
             file.write("x,y,z,radius\n0,0,0,1e-18\n0,0,0.1,0.001\n")
-        for ranks in (1, 3):
-            self.failed_record(
-                self.fails(
-                    self.put(dust), ranks, 5, "step 3, t = 3e-05 s: the last state holds NaN"
-                ),
-                5,
-            )
+        run = self.fails(self.put(dust), 3, 5, "step 3, t = 3e-05 s: the last state holds NaN")
+        self.failed_record(run, 5)
 
     def test_lost_element(self):
         free = scene_parts.scene(
@@ -134,10 +128,9 @@ class Numerics(Failures):
             [scene_parts.block("free", (0, 0, 0), (0.02, 0.02, 0.02), 0.005, velocity=(1, 0, 0))],
             domain={"box": {"min": [-0.1, -0.1, -1], "max": [0.1, 0.1, 1]}},
         )
-        for ranks in (1, 3):
-            run = self.fails(self.put(free), ranks, 5, r"step \d+, t = .*: .*element \d+ .*domain")
-            self.failed_record(run, 5)
-            self.whole(run.dir)
+        run = self.fails(self.put(free), 3, 5, r"step \d+, t = .*: .*element \d+ .*domain")
+        self.failed_record(run, 5)
+        self.whole(run.dir)
 
 
 class Environment(Failures):

@@ -1,0 +1,31 @@
+"""A display for VTK, which in Debian 12 draws through X only."""
+import atexit
+import os
+import shutil
+import subprocess
+
+
+def ensure():
+    """Starts Xvfb, an X server without a screen, until this process ends, if there is no display.
+    Says what is missing, or returns None. The server itself looks for a free number: xvfb-run,
+    which looks before it starts one, gives two that start together the same."""
+    if os.environ.get("DISPLAY"):
+        return None
+    if not shutil.which("Xvfb"):
+        return "no display; install xvfb (scripts/setup does)"
+    number, told = os.pipe()
+    server = subprocess.Popen(
+        ["Xvfb", "-displayfd", str(told), "-screen", "0", "1280x1024x24", "-nolisten", "tcp"],
+        pass_fds=(told,),
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    os.close(told)
+    atexit.register(server.terminate)
+    with os.fdopen(number) as pipe:
+        display = pipe.readline().strip()
+    if not display:
+        return "no display, and Xvfb does not start"
+    os.environ["DISPLAY"] = ":" + display
+    return None
