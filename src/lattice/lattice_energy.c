@@ -40,8 +40,7 @@ static double *places(const struct lattice *l, const struct lattice_cells *cells
 
 struct lattice_account *lattice_energy_create(struct lattice *l, const struct lattice_cells *cells)
 {
-    static const char *const source[] = {"link_energy.cl", NULL}, *const gravity[] = {"gravity_x",
-                                                                      "gravity_y", "gravity_z"};
+    static const char *const source[] = {"link_energy.cl", NULL};
     struct lattice_account *a = fail_alloc(sizeof *a);
     a->l = l;
     buffer_init(&a->place, l->dev, "lattice places");
@@ -64,7 +63,7 @@ struct lattice_account *lattice_energy_create(struct lattice *l, const struct la
     launch_bind_buffer(a->launch, "partial", &a->partial);
     launch_set_int(a->launch, "n", l->layout->n_force);
     if (l->features.energy && l->breakage) lattice_break_bind(l->breakage, a->launch);
-    for (int k = 0; k < 3; k++) launch_set_real(a->launch, gravity[k], l->options.gravity[k]);
+    launch_set_vector(a->launch, "gravity", l->options.gravity);
     struct lattice_energy start;
     lattice_energy_now(a, &start);
     lattice_energy_reopen(a, (const double[]){start.work, start.link_damping, start.mass_damping});

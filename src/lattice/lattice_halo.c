@@ -40,8 +40,8 @@ struct lattice_halo *lattice_halo_create(struct device *dev, const struct comm *
     h->unpack = launch_create(program, "lattice_unpack");
     bind(h->pack, layout, x, v, word);
     bind(h->unpack, layout, x, v, word);
-    launch_set_int(h->pack, "n", (int)layout->n_send);
-    launch_set_int(h->unpack, "n", (int)layout->n_recv);
+    launch_set_count(h->pack, "n", layout->n_send);
+    launch_set_count(h->unpack, "n", layout->n_recv);
     launch_bind_buffer(h->pack, "index", &h->send);
     launch_bind_buffer(h->unpack, "index", &h->recv);
     launch_bind_buffer(h->pack, "record", &out->packed);

@@ -58,8 +58,7 @@ struct limit *limit_create(struct sim *s)
     write_table(s, limit);
     launch_set_int(limit->launch, "n_material", s->scene->n_material);
     launch_set_int(limit->launch, "kind", run->first->n > 0 ? run->first->material[0] : 0);
-    static const char *const axis[] = {"period_x", "period_y", "period_z"};
-    for (int a = 0; a < 3; a++) launch_set_real_if(limit->launch, axis[a], run->period[a]);
+    launch_set_vector_if(limit->launch, "period", run->period);
     return limit;
 }
 
@@ -74,29 +73,23 @@ void limit_free(struct limit *limit)
     free(limit);
 }
 
-struct binding {
-    const char *name;
-    const struct buffer *buffer;
-};
-
 static void bind(struct sim *s, struct limit *limit)
 {
     struct particle_run *run = s->particle;
     const struct particles *p = run->particles;
     const struct wall_contacts *w = run->wall_contacts;
-    const struct binding pairs[] = {{"position", &p->field[FIELD_STATE].now},
-        {"motion", &p->field[FIELD_STATE].now}, {"gid", &p->field[FIELD_GID].now},
-        {"row_begin", &run->pairs->now.row_begin}, {"row", &run->pairs->now.row},
-        {"table", &limit->table}, {"partial", &limit->partial},
-        {"partial_gid", &limit->partial_gid}};
-    for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++)
-        launch_bind_buffer(limit->launch, pairs[i].name, pairs[i].buffer);
+    launch_bind_all(limit->launch,
+        (const struct launch_binding[]){{"position", &p->field[FIELD_STATE].now},
+            {"motion", &p->field[FIELD_STATE].now}, {"gid", &p->field[FIELD_GID].now},
+            {"row_begin", &run->pairs->now.row_begin}, {"row", &run->pairs->now.row},
+            {"table", &limit->table}, {"partial", &limit->partial},
+            {"partial_gid", &limit->partial_gid}, {0}});
     if (!w) return;
-    const struct binding walls[] = {{"wall_begin", &w->now.begin}, {"candidate", &w->now.candidate},
-        {"primitive", &w->primitive}, {"wall_of", &w->wall_of}, {"wall_material", &w->material},
-        {"pose", &w->pose}, {"keep", &w->keep}};
-    for (size_t i = 0; i < sizeof walls / sizeof *walls; i++)
-        launch_bind_buffer_if(limit->launch, walls[i].name, walls[i].buffer);
+    launch_bind_all_if(
+        limit->launch, (const struct launch_binding[]){{"wall_begin", &w->now.begin},
+                           {"candidate", &w->now.candidate}, {"primitive", &w->primitive},
+                           {"wall_of", &w->wall_of}, {"wall_material", &w->material},
+                           {"pose", &w->pose}, {"keep", &w->keep}, {0}});
 }
 
 /* Of this rank. */
@@ -132,7 +125,7 @@ struct limit_result limit_run(struct sim *s, double dt, double share)
     }
     if (run->particles->n_owned > 0) {
         bind(s, limit);
-        launch_set_int(limit->launch, "n_owned", (int)run->particles->n_owned);
+        launch_set_count(limit->launch, "n_owned", run->particles->n_owned);
         launch_set_real(limit->launch, "dt", dt);
         launch_set_real(limit->launch, "share", share);
         best = smallest(s, limit);

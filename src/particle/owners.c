@@ -31,9 +31,7 @@ struct owners *owners_create(struct device *dev, const struct comm *comm,
     o->copy = launch_create(lists, "record_copy");
     launch_set_int(o->select, "rank", comm->rank);
     launch_set_int(o->select, "remove", features->remove_outside);
-    launch_set_real_if(o->select, "period_x", period[0]);
-    launch_set_real_if(o->select, "period_y", period[1]);
-    launch_set_real_if(o->select, "period_z", period[2]);
+    launch_set_vector_if(o->select, "period", period);
     return o;
 }
 
@@ -71,15 +69,12 @@ static int64_t find_leaving(struct owners *o, struct scan *scan, struct particle
     buffer_reserve(&o->owner, n * sizeof(cl_int));
     buffer_reserve(&o->stay, n * sizeof(cl_int));
     buffer_reserve(&o->leave, (n + 1) * sizeof(cl_int));
-    launch_set_int(o->select, "n", (int)n);
+    launch_set_count(o->select, "n", n);
     launch_set_int(o->select, "n_node", o->n_node);
-    launch_bind_buffer(o->select, "position", &p->field[FIELD_STATE].now);
-    launch_bind_buffer(o->select, "node", &o->node);
-    launch_bind_buffer(o->select, "cut", &o->cut);
-    launch_bind_buffer(o->select, "domain", &o->domain);
-    launch_bind_buffer(o->select, "owner", &o->owner);
-    launch_bind_buffer(o->select, "stay", &o->stay);
-    launch_bind_buffer(o->select, "leave", &o->leave);
+    launch_bind_all(
+        o->select, (const struct launch_binding[]){{"position", &p->field[FIELD_STATE].now},
+                       {"node", &o->node}, {"cut", &o->cut}, {"domain", &o->domain},
+                       {"owner", &o->owner}, {"stay", &o->stay}, {"leave", &o->leave}, {0}});
     launch_run(o->select, p->n_owned);
     return scan_total(scan, &o->leave, p->n_owned);
 }
@@ -90,11 +85,10 @@ static void *pick(struct owners *o, const struct buffer *from, size_t bytes, int
     void *rows = fail_alloc((size_t)n * bytes);
     if (bytes == 0) return rows;
     buffer_reserve(&o->picked, (size_t)n * bytes);
-    launch_set_int(o->gather, "n", (int)n);
-    launch_set_int(o->gather, "words", (int)(bytes / 4));
-    launch_bind_buffer(o->gather, "index", &o->index);
-    launch_bind_buffer(o->gather, "from", from);
-    launch_bind_buffer(o->gather, "to", &o->picked);
+    launch_set_count(o->gather, "n", n);
+    launch_set_count(o->gather, "words", bytes / 4);
+    launch_bind_all(o->gather, (const struct launch_binding[]){
+                                   {"index", &o->index}, {"from", from}, {"to", &o->picked}, {0}});
     launch_run(o->gather, n);
     buffer_read(&o->picked, 0, (size_t)n * bytes, rows);
     return rows;
@@ -127,7 +121,7 @@ static struct owners_arriving exchange(struct owners *o, struct scan *scan, stru
 {
     struct owners_leaving l = {.n = n_leave};
     buffer_reserve(&o->index, (size_t)n_leave * sizeof(cl_int));
-    launch_set_int(o->compact, "n", (int)p->n_owned);
+    launch_set_count(o->compact, "n", p->n_owned);
     launch_bind_buffer(o->compact, "at", &o->leave);
     launch_bind_buffer(o->compact, "index", &o->index);
     launch_run(o->compact, p->n_owned);
@@ -174,7 +168,7 @@ void owners_move(struct owners *o, struct cells *cells, struct scan *scan, struc
     if (n_keep > 0) {
         launch_bind_buffer(o->copy, "from", &cells->member);
         launch_bind_buffer(o->copy, "to", &o->old_index);
-        launch_set_int(o->copy, "n", (int)n_keep);
+        launch_set_count(o->copy, "n", n_keep);
         launch_run(o->copy, n_keep);
     }
     particles_swap(p);

@@ -21,20 +21,17 @@ static void bind_leave(
 {
     if (pairs) {
         const struct pair_list *l = &pairs->now;
-        launch_bind_buffer(k, "row_begin", &l->row_begin);
-        launch_bind_buffer(k, "row_gid", &l->row_gid);
-        launch_bind_buffer(k, "incidence_begin", &l->incidence_begin);
-        launch_bind_buffer(k, "incidence", &l->incidence);
-        launch_bind_buffer(k, "state", &l->state);
-        launch_bind_buffer(k, "history", &l->history);
-        launch_set_int(k, "capacity", (int)l->capacity);
+        launch_bind_all(k,
+            (const struct launch_binding[]){{"row_begin", &l->row_begin}, {"row_gid", &l->row_gid},
+                {"incidence_begin", &l->incidence_begin}, {"incidence", &l->incidence},
+                {"state", &l->state}, {"history", &l->history}, {0}});
+        launch_set_count(k, "capacity", l->capacity);
     } else {
         const struct wall_list *l = &walls->now;
-        launch_bind_buffer(k, "wall_begin", &l->begin);
-        launch_bind_buffer(k, "candidate", &l->candidate);
-        launch_bind_buffer(k, "state", &l->state);
-        launch_bind_buffer(k, "history", &l->history);
-        launch_set_int(k, "capacity", (int)l->capacity);
+        launch_bind_all(k,
+            (const struct launch_binding[]){{"wall_begin", &l->begin}, {"candidate", &l->candidate},
+                {"state", &l->state}, {"history", &l->history}, {0}});
+        launch_set_count(k, "capacity", l->capacity);
     }
 }
 
@@ -54,15 +51,13 @@ void owners_pick_contacts(struct owners_contacts *c, struct scan *scan, const st
     contact_arrivals_init(index->dev, &out, "leaving contacts");
     buffer_reserve(&out.begin, ((size_t)n + 1) * sizeof(cl_int));
     bind_leave(k, pairs, walls);
-    launch_set_int(k, "n", (int)n);
+    launch_set_count(k, "n", n);
     launch_set_int(k, "fill", 0);
     launch_set_int(k, "width", layout->history);
     launch_set_int(k, "leave_capacity", 0);
-    launch_bind_buffer(k, "index", index);
-    launch_bind_buffer(k, "begin", &out.begin);
-    launch_bind_buffer(k, pairs ? "leave_gid" : "leave_candidate", &out.key);
-    launch_bind_buffer(k, "leave_state", &out.state);
-    launch_bind_buffer(k, "leave_history", &out.history);
+    launch_bind_all(k, (const struct launch_binding[]){{"index", index}, {"begin", &out.begin},
+                           {pairs ? "leave_gid" : "leave_candidate", &out.key},
+                           {"leave_state", &out.state}, {"leave_history", &out.history}, {0}});
     launch_run(k, n);
     size_t total = (size_t)scan_total(scan, &out.begin, n);
     c->history_bytes = (size_t)layout->history * real;
@@ -70,7 +65,7 @@ void owners_pick_contacts(struct owners_contacts *c, struct scan *scan, const st
     buffer_reserve(&out.state, total * sizeof(cl_int));
     buffer_reserve(&out.history, total * c->history_bytes);
     launch_set_int(k, "fill", 1);
-    launch_set_int(k, "leave_capacity", (int)total);
+    launch_set_count(k, "leave_capacity", total);
     launch_run(k, n);
     char *key = fail_alloc(total * key_bytes), *plane = fail_alloc(total * c->history_bytes);
     c->key = fail_alloc(total * sizeof *c->key);

@@ -98,11 +98,11 @@ void particles_permute(struct particles *p, const struct buffer *index, int64_t 
 {
     for (int i = 0; i < FIELD_N; i++) {
         if (p->field[i].bytes == 0) continue;
-        launch_set_int(p->gather, "n", (int)n);
-        launch_set_int(p->gather, "words", (int)(p->field[i].bytes / 4));
-        launch_bind_buffer(p->gather, "index", index);
-        launch_bind_buffer(p->gather, "from", &p->field[i].now);
-        launch_bind_buffer(p->gather, "to", &p->field[i].spare);
+        launch_set_count(p->gather, "n", n);
+        launch_set_count(p->gather, "words", p->field[i].bytes / 4);
+        launch_bind_all(
+            p->gather, (const struct launch_binding[]){{"index", index}, {"from", &p->field[i].now},
+                           {"to", &p->field[i].spare}, {0}});
         launch_run(p->gather, n);
     }
 }

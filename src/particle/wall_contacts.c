@@ -136,7 +136,7 @@ void wall_contacts_set_step(struct wall_contacts *w, int64_t step)
     if (first || step >= w->batch_first + WALL_BATCH)
         new_batch(w, step, first || w->features->moving);
     if (!first && !w->features->moving) return;
-    launch_set_int(w->copy, "first", (int)(step - w->batch_first) * w->walls->n_wall * POSE_WIDTH);
+    launch_set_count(w->copy, "first", (step - w->batch_first) * w->walls->n_wall * POSE_WIDTH);
     launch_run(w->copy, (int64_t)w->walls->n_wall * POSE_WIDTH);
 }
 
@@ -201,17 +201,13 @@ void wall_contacts_build(struct wall_contacts *w, struct scan *scan, const struc
     l->n_owned = p->n_owned;
     set_room(w, step, horizon_steps, low, high);
     buffer_reserve(&l->begin, ((size_t)l->n_owned + 1) * sizeof(cl_int));
-    launch_set_int(w->rows, "n_owned", (int)l->n_owned);
+    launch_set_count(w->rows, "n_owned", l->n_owned);
     launch_set_int(w->rows, "n_primitive", w->walls->n_primitive);
-    const struct {
-        const char *name;
-        const struct buffer *buffer;
-    } bind[] = {{"position", &p->field[FIELD_STATE].now}, {"reach", &p->reach},
-        {"primitive", &w->primitive}, {"bounds", &w->bounds}, {"wall_of", &w->wall_of},
-        {"pose", &w->pose}, {"room", &w->room}, {"begin", &l->begin}, {"candidate", &l->candidate},
-        {"candidate_element", &l->element}};
-    for (size_t i = 0; i < sizeof bind / sizeof *bind; i++)
-        launch_bind_buffer(w->rows, bind[i].name, bind[i].buffer);
+    launch_bind_all(w->rows,
+        (const struct launch_binding[]){{"position", &p->field[FIELD_STATE].now},
+            {"reach", &p->reach}, {"primitive", &w->primitive}, {"bounds", &w->bounds},
+            {"wall_of", &w->wall_of}, {"pose", &w->pose}, {"room", &w->room}, {"begin", &l->begin},
+            {"candidate", &l->candidate}, {"candidate_element", &l->element}, {0}});
     launch_set_int(w->rows, "fill", 0);
     launch_run(w->rows, l->n_owned);
     l->n = scan_total(scan, &l->begin, l->n_owned);
@@ -226,23 +222,19 @@ void wall_contacts_carry(struct wall_contacts *w, const struct buffer *old_index
     struct wall_list *l = &w->now, *o = &w->old;
     struct launch *k = w->carry;
     if (!w->layout.remembers) return;
-    launch_set_int(k, "n_owned", (int)l->n_owned);
-    launch_set_int(k, "n_old", (int)o->n_owned);
+    launch_set_count(k, "n_owned", l->n_owned);
+    launch_set_count(k, "n_old", o->n_owned);
     launch_set_int(k, "width", w->layout.history);
-    launch_set_int(k, "capacity", (int)l->capacity);
-    launch_set_int(k, "old_capacity", (int)o->capacity);
-    launch_set_int(k, "arrival_capacity", (int)w->arrivals.n_contact);
-    const struct {
-        const char *name;
-        const struct buffer *buffer;
-    } bind[] = {{"begin", &l->begin}, {"candidate", &l->candidate}, {"old_index", old_index},
-        {"old_begin", &o->begin}, {"old_candidate", &o->candidate},
-        {"arrival_begin", &w->arrivals.begin}, {"arrival_candidate", &w->arrivals.key},
-        {"arrival_state", &w->arrivals.state}, {"arrival_history", &w->arrivals.history},
-        {"old_state", &o->state}, {"old_history", &o->history}, {"state", &l->state},
-        {"history", &l->history}};
-    for (size_t i = 0; i < sizeof bind / sizeof *bind; i++)
-        launch_bind_buffer(k, bind[i].name, bind[i].buffer);
+    launch_set_count(k, "capacity", l->capacity);
+    launch_set_count(k, "old_capacity", o->capacity);
+    launch_set_count(k, "arrival_capacity", w->arrivals.n_contact);
+    launch_bind_all(
+        k, (const struct launch_binding[]){{"begin", &l->begin}, {"candidate", &l->candidate},
+               {"old_index", old_index}, {"old_begin", &o->begin}, {"old_candidate", &o->candidate},
+               {"arrival_begin", &w->arrivals.begin}, {"arrival_candidate", &w->arrivals.key},
+               {"arrival_state", &w->arrivals.state}, {"arrival_history", &w->arrivals.history},
+               {"old_state", &o->state}, {"old_history", &o->history}, {"state", &l->state},
+               {"history", &l->history}, {0}});
     launch_run(k, l->n_owned);
 }
 
@@ -264,18 +256,13 @@ void wall_contacts_select(struct wall_contacts *w, const struct particles *p)
 {
     struct wall_list *l = &w->now;
     struct launch *k = w->keep_launch;
-    launch_set_int(k, "n_owned", (int)l->n_owned);
-    const struct {
-        const char *name;
-        const struct buffer *buffer;
-    } bind[] = {{"position", &p->field[FIELD_STATE].now}, {"begin", &l->begin},
-        {"candidate", &l->candidate}, {"primitive", &w->primitive},
-        {"features", &w->triangle_features}, {"wall_of", &w->wall_of}, {"pose", &w->pose},
-        {"keep", &w->keep}};
-    for (size_t i = 0; i < sizeof bind / sizeof *bind; i++)
-        launch_bind_buffer(k, bind[i].name, bind[i].buffer);
+    launch_set_count(k, "n_owned", l->n_owned);
+    launch_bind_all(k, (const struct launch_binding[]){{"position", &p->field[FIELD_STATE].now},
+                           {"begin", &l->begin}, {"candidate", &l->candidate},
+                           {"primitive", &w->primitive}, {"features", &w->triangle_features},
+                           {"wall_of", &w->wall_of}, {"pose", &w->pose}, {"keep", &w->keep}, {0}});
     launch_bind_buffer_if(k, "state", &l->state);
     launch_bind_buffer_if(k, "history", &l->history);
-    launch_set_int_if(k, "capacity", (int)l->capacity);
+    launch_set_count_if(k, "capacity", l->capacity);
     launch_run(k, l->n_owned);
 }
