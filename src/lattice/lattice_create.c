@@ -124,9 +124,10 @@ struct lattice *lattice_create(struct device *dev, const struct comm *comm,
     if (l->scheme->first > 0)
         l->first = lattice_launch(l, l->program, "lattice_first", &l->force_list);
     if (comm->n_rank > 1)
-        l->halo = lattice_halo_create(dev, comm, l->program, l->layout, &l->x,
-            LATTICE_X(l->features.turn), lattice_x_bytes(l), &l->v,
-            l->features.link_damping ? LATTICE_V : 0, lattice_v_bytes(l),
+        l->halo = lattice_halo_create(comm, l->program, l->layout,
+            (struct lattice_planes){&l->x, LATTICE_X(l->features.turn), lattice_x_bytes(l)},
+            (struct lattice_planes){
+                &l->v, l->features.link_damping ? LATTICE_V : 0, lattice_v_bytes(l)},
             l->features.breakage ? &l->word : NULL);
     l->part =
         lattice_owners_part(cells, owner, comm->rank, l->halo ? l->halo->exchange.halo->n_send : 0);

@@ -130,10 +130,8 @@ static struct owners_arriving exchange(struct owners *o, struct scan *scan, stru
         l.bytes[i] = p->field[i].bytes;
         l.field[i] = pick(o, &p->field[i].now, l.bytes[i], n_leave);
     }
-    owners_pick_contacts(
-        &l.pair, scan, &o->index, n_leave, pairs, NULL, particles_real(o->features));
-    owners_pick_contacts(
-        &l.wall, scan, &o->index, n_leave, NULL, walls, particles_real(o->features));
+    owners_pick_pairs(&l.pair, scan, &o->index, n_leave, pairs);
+    owners_pick_walls(&l.wall, scan, &o->index, n_leave, walls);
     remember_removed(o, &l, owner, n_leave);
     int64_t *bytes_to = fail_alloc((size_t)o->comm->n_rank * sizeof *bytes_to),
             *bytes_from = fail_alloc((size_t)o->comm->n_rank * sizeof *bytes_from);
@@ -182,12 +180,8 @@ void owners_move(struct owners *o, struct cells *cells, struct scan *scan, struc
             &o->old_index, (size_t)n_keep * sizeof *number, (size_t)a.n * sizeof *number, number);
         free(number);
     }
-    if (pairs)
-        owners_store_contacts(&pairs->arrivals, &a.pair, a.n, sizeof(int64_t),
-            pairs->layout.history, particles_real(o->features));
-    if (walls)
-        owners_store_contacts(&walls->arrivals, &a.wall, a.n, sizeof(cl_int), walls->layout.history,
-            particles_real(o->features));
+    owners_store_pairs(pairs, &a.pair, a.n);
+    if (walls) owners_store_walls(walls, &a.wall, a.n);
     p->n_owned = n_new;
     p->n_ghost = 0;
     particles_reserve(p, o->features, n_new, n_new);

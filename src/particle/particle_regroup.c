@@ -123,8 +123,8 @@ void particle_lists(struct sim *s, int64_t step)
     pairs_build(run->pairs, run->cells, run->scan, p);
     if (run->assigned) assigned_build(run->assigned, run->scan, p, run->pairs, run->ghosts);
     if (run->wall_contacts)
-        wall_contacts_build(run->wall_contacts, run->scan, p, step, (int)ceil(run->horizon / s->dt),
-            run->box, run->box + 3);
+        wall_contacts_build(
+            run->wall_contacts, run->scan, p, step, (int)ceil(run->horizon / s->dt), run->box);
     watch_reset(&s->watch, s->comm, &p->flags);
     run->built_at = step;
     const struct pair_list *l = &run->pairs->now;

@@ -179,8 +179,13 @@ void particle_setup(struct sim *s)
         run->assigned = assigned_create(s->dev, s->comm, run->program_assign, run->program_lists,
             particles_real(&run->features));
     if (run->features.walls)
-        run->wall_contacts = wall_contacts_create(s->dev, s->comm, &run->features, s->scene,
-            run->walls, s->dt, run->program_lists, run->program_wall);
+        run->wall_contacts = wall_contacts_create(&(struct wall_setup){.comm = s->comm,
+            .features = &run->features,
+            .scene = s->scene,
+            .walls = run->walls,
+            .dt = s->dt,
+            .lists = run->program_lists,
+            .force = run->program_wall});
     run->energy = energy_create(s);
     run->horizon = HORIZON_STEPS * s->dt;
     if (s->from) particle_resume(s);
