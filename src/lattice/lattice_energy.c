@@ -53,8 +53,7 @@ struct lattice_account *lattice_energy_create(struct lattice *l, const struct la
     free(options);
     double *place = places(l, cells);
     size_t bytes = (size_t)l->layout->n_run * 4 * sizeof *place;
-    buffer_reserve(&a->place, bytes);
-    buffer_write(&a->place, 0, bytes, place);
+    buffer_put(&a->place, bytes, place);
     free(place);
     buffer_reserve(&a->partial, (size_t)SUMS_GROUPS * ACCOUNT_WIDTH * SUMS_WIDTH * sizeof(int64_t));
     a->launch = lattice_launch(l, a->program, "link_energies", &l->force_list);

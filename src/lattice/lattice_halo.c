@@ -4,14 +4,6 @@
 
 #include "comm/fail.h"
 
-static void upload(
-    struct device *dev, struct buffer *buffer, const char *name, const int *data, int64_t n)
-{
-    buffer_init(buffer, dev, name);
-    buffer_reserve(buffer, (size_t)n * sizeof *data);
-    buffer_write(buffer, 0, (size_t)n * sizeof *data, data);
-}
-
 struct lattice_halo *lattice_halo_create(const struct comm *comm, const struct program *program,
     const struct lattice_layout *layout, struct lattice_planes x, struct lattice_planes v,
     const struct buffer *word)
@@ -21,8 +13,10 @@ struct lattice_halo *lattice_halo_create(const struct comm *comm, const struct p
     struct lattice_halo *h = fail_alloc(sizeof *h);
     struct device *dev = program->dev;
     struct exchange *out = &h->exchange;
-    upload(dev, &h->send, "lattice send", layout->send, layout->n_send);
-    upload(dev, &h->recv, "lattice receive", layout->recv, layout->n_recv);
+    buffer_init(&h->send, dev, "lattice send");
+    buffer_init(&h->recv, dev, "lattice receive");
+    buffer_put(&h->send, (size_t)layout->n_send * sizeof *layout->send, layout->send);
+    buffer_put(&h->recv, (size_t)layout->n_recv * sizeof *layout->recv, layout->recv);
     exchange_init(out, dev, name);
     exchange_plan(out, comm, layout->count_to);
     exchange_bind(

@@ -38,20 +38,19 @@ static const struct buffer_spec buffers[] = {{"segments", offsetof(struct assign
     {"pairs begin", offsetof(struct assigned, begin)},
     {"elements used", offsetof(struct assigned, used)}, {0}};
 
+static const struct buffer_spec side_buffers[] = {{"assigned pairs", offsetof(struct side, pair)},
+    {"assigned elements", offsetof(struct side, element)}, {0}};
+
 static void side_init(struct device *dev, struct side *side, int n_rank)
 {
-    buffer_init(&side->pair, dev, "assigned pairs");
-    buffer_init(&side->element, dev, "assigned elements");
-    buffer_reserve(&side->pair, 0);
-    buffer_reserve(&side->element, 0);
+    buffers_create(dev, side, side_buffers);
     side->n_pair = fail_alloc((size_t)n_rank * sizeof *side->n_pair);
     side->n_element = fail_alloc((size_t)n_rank * sizeof *side->n_element);
 }
 
 static void side_free(struct side *side)
 {
-    buffer_free(&side->pair);
-    buffer_free(&side->element);
+    buffers_free(side, side_buffers);
     free(side->n_pair);
     free(side->n_element);
 }
@@ -104,8 +103,7 @@ static void write_segments(struct assigned *a, const int64_t *begin, int n)
 {
     cl_int *at = fail_alloc(((size_t)n + 1) * sizeof *at);
     for (int s = 0; s <= n; s++) at[s] = (cl_int)begin[s];
-    buffer_reserve(&a->segment, ((size_t)n + 1) * sizeof *at);
-    buffer_write(&a->segment, 0, ((size_t)n + 1) * sizeof *at, at);
+    buffer_put(&a->segment, ((size_t)n + 1) * sizeof *at, at);
     free(at);
 }
 
@@ -183,8 +181,7 @@ static void list_side(struct assigned *a, struct scan *scan, const struct partic
     struct launch *k = a->list;
     int64_t n = e->begin[e->n_segment];
     write_segments(a, e->begin, e->n_segment);
-    buffer_reserve(&a->range, (size_t)e->n_segment * sizeof *e->range);
-    buffer_write(&a->range, 0, (size_t)e->n_segment * sizeof *e->range, e->range);
+    buffer_put(&a->range, (size_t)e->n_segment * sizeof *e->range, e->range);
     buffer_reserve(&a->begin, ((size_t)n + 1) * sizeof(cl_int));
     launch_bind_all(k,
         (const struct launch_binding[]){{"segment", &a->segment}, {"range", &a->range},

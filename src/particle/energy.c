@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "comm/fail.h"
+#include "device/buffers.h"
 #include "device/integer_sums.h"
 #include "particle.h"
 #include "scene/measure_columns.h"
@@ -30,14 +31,16 @@ struct energy {
     bool wraps;                /* some period has a component of gravity along it */
 };
 
+static const struct buffer_spec buffers[] = {{"sums", offsetof(struct energy, partial)},
+    {"gone elements", offsetof(struct energy, gone_id)},
+    {"gone walls", offsetof(struct energy, gone_wall)}, {0}};
+
 struct energy *energy_create(struct sim *s)
 {
     struct particle_run *run = s->particle;
     static const char *const source[] = {"sums.cl", NULL};
     struct energy *e = fail_alloc(sizeof *e);
-    buffer_init(&e->partial, s->dev, "sums");
-    buffer_init(&e->gone_id, s->dev, "gone elements");
-    buffer_init(&e->gone_wall, s->dev, "gone walls");
+    buffers_init(s->dev, e, buffers);
     for (int a = 0; a < 3; a++)
         e->wraps |= run->features.periodic[a] && fabs(s->scene->gravity[a]) > 0;
     if (!s->dev->fp64) return e;
@@ -66,9 +69,7 @@ void energy_free(struct energy *e)
     struct launch *launch[] = {e->elements, e->ledger, e->gone, e->gone_walls};
     for (int i = 0; i < 4; i++) launch_free(launch[i]);
     program_free(e->program);
-    buffer_free(&e->partial);
-    buffer_free(&e->gone_id);
-    buffer_free(&e->gone_wall);
+    buffers_free(e, buffers);
     free(e);
 }
 
@@ -148,8 +149,7 @@ static int64_t share_gone(struct sim *s)
     for (size_t i = 0; i < n_all; i++)
         if (all[i] >= 0) all[n++] = all[i];
     qsort(all, (size_t)n, sizeof *all, by_number);
-    buffer_reserve(&run->energy->gone_id, (size_t)n * sizeof *all);
-    buffer_write(&run->energy->gone_id, 0, (size_t)n * sizeof *all, all);
+    buffer_put(&run->energy->gone_id, (size_t)n * sizeof *all, all);
     free(mine);
     free(all);
     return n;
@@ -185,8 +185,7 @@ static void remove_walls(struct sim *s)
     for (int k = 0; k < w->walls->n_wall; k++)
         any |= gone[k] = w->room_host[k] >= 0 && !pose[k].active;
     if (any) {
-        buffer_reserve(&e->gone_wall, bytes);
-        buffer_write(&e->gone_wall, 0, bytes, gone);
+        buffer_put(&e->gone_wall, bytes, gone);
         launch_set_count(e->gone_walls, "n", w->now.n);
         launch_set_count(e->gone_walls, "capacity", w->now.capacity);
         launch_bind_all(

@@ -5,6 +5,10 @@
 #include <string.h>
 
 #include "comm/fail.h"
+#include "device/buffers.h"
+
+static const struct buffer_spec buffers[] = {{"ghost index", offsetof(struct ghosts, index)},
+    {"ghost pick", offsetof(struct ghosts, pick)}, {0}};
 
 struct ghosts *ghosts_create(struct device *dev, const struct comm *comm,
     const struct features *features, const struct program *lists, const double period[3])
@@ -16,10 +20,7 @@ struct ghosts *ghosts_create(struct device *dev, const struct comm *comm,
     static const char *const name[] = {
         "ghost pack", "ghosts arrived", "ghost send", "ghost receive"};
     exchange_init(&g->exchange, dev, name);
-    buffer_init(&g->index, dev, "ghost index");
-    buffer_init(&g->pick, dev, "ghost pick");
-    buffer_reserve(&g->index, 64);
-    buffer_reserve(&g->pick, 64);
+    buffers_create(dev, g, buffers);
     g->select = launch_create(lists, "select_ghosts");
     g->compact = launch_create(lists, "record_select");
     g->gather = launch_create(lists, "record_gather");
@@ -32,8 +33,7 @@ void ghosts_free(struct ghosts *g)
 {
     if (!g) return;
     exchange_free(&g->exchange);
-    buffer_free(&g->index);
-    buffer_free(&g->pick);
+    buffers_free(g, buffers);
     launch_free(g->select);
     launch_free(g->compact);
     launch_free(g->gather);
@@ -134,8 +134,7 @@ static void choose(struct ghosts *g, struct scan *scan, const struct particles *
         buffer_read(&piece, 0, (size_t)count_to[r] * sizeof *index, index + n_send);
         n_send += count_to[r];
     }
-    buffer_reserve(&g->index, (size_t)n_send * sizeof(cl_int));
-    buffer_write(&g->index, 0, (size_t)n_send * sizeof(cl_int), index);
+    buffer_put(&g->index, (size_t)n_send * sizeof(cl_int), index);
     buffer_free(&piece);
     free(index);
 }

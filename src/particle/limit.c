@@ -6,6 +6,7 @@
 
 #include "contact_table.h"
 #include "comm/fail.h"
+#include "device/buffers.h"
 #include "particle.h"
 
 /* Several elements per work-item: most are then seen at a glance not to be the one. */
@@ -17,6 +18,11 @@ struct limit {
     struct buffer table, partial, partial_gid;
 };
 
+static const struct buffer_spec buffers[] = {
+    {"materials of the limit", offsetof(struct limit, table)},
+    {"limit", offsetof(struct limit, partial)},
+    {"limit, elements", offsetof(struct limit, partial_gid)}, {0}};
+
 static void write_table(struct sim *s, struct limit *limit)
 {
     struct particle_run *run = s->particle;
@@ -25,8 +31,7 @@ static void write_table(struct sim *s, struct limit *limit)
     double *row = fail_alloc(n_value * sizeof *row);
     for (int k = 0; k < n * n; k++)
         limit_material(s->scene, k / n, k % n, row + k * MATERIAL_WIDTH);
-    buffer_reserve(&limit->table, n_value * particles_real(&run->features));
-    reals_write(&limit->table, run->features.real_is_float, 0, n_value, row);
+    reals_put(&limit->table, run->features.real_is_float, n_value, row);
     free(row);
 }
 
@@ -50,9 +55,7 @@ struct limit *limit_create(struct sim *s)
     limit->program = program_build(s->dev, s->comm, "limit", options, sources);
     free(options);
     limit->launch = launch_create(limit->program, "step_limit");
-    buffer_init(&limit->table, s->dev, "materials of the limit");
-    buffer_init(&limit->partial, s->dev, "limit");
-    buffer_init(&limit->partial_gid, s->dev, "limit, elements");
+    buffers_init(s->dev, limit, buffers);
     buffer_reserve(&limit->partial, GROUPS_MOST * particles_real(&run->features));
     buffer_reserve(&limit->partial_gid, GROUPS_MOST * sizeof(int64_t));
     write_table(s, limit);
@@ -65,9 +68,7 @@ struct limit *limit_create(struct sim *s)
 void limit_free(struct limit *limit)
 {
     if (!limit) return;
-    buffer_free(&limit->table);
-    buffer_free(&limit->partial);
-    buffer_free(&limit->partial_gid);
+    buffers_free(limit, buffers);
     launch_free(limit->launch);
     program_free(limit->program);
     free(limit);

@@ -23,8 +23,7 @@ struct owners *owners_create(struct device *dev, const struct comm *comm,
     o->comm = comm;
     o->features = features;
     buffers_create(dev, o, buffers);
-    buffer_reserve(&o->domain, 6 * particles_preal(features));
-    reals_write(&o->domain, features->position_is_float, 0, 6, domain);
+    reals_put(&o->domain, features->position_is_float, 6, domain);
     o->select = launch_create(lists, "select_owner");
     o->compact = launch_create(lists, "record_select");
     o->gather = launch_create(lists, "record_gather");
@@ -55,10 +54,8 @@ void owners_set_tree(struct owners *o, const struct rcb *rcb)
         node[3 * k + 2] = rcb->right[k];
     }
     o->n_node = rcb->n_node;
-    buffer_reserve(&o->node, 3 * n * sizeof *node);
-    buffer_reserve(&o->cut, n * particles_preal(o->features));
-    buffer_write(&o->node, 0, 3 * n * sizeof *node, node);
-    reals_write(&o->cut, o->features->position_is_float, 0, n, rcb->cut);
+    buffer_put(&o->node, 3 * n * sizeof *node, node);
+    reals_put(&o->cut, o->features->position_is_float, n, rcb->cut);
     free(node);
 }
 

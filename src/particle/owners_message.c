@@ -234,15 +234,11 @@ static void store(struct contact_arrivals *a, const struct owners_contacts *c, i
             memcpy(
                 plane + (w * total + k) * real, c->history + k * c->history_bytes + w * real, real);
     }
-    buffer_reserve(&a->begin, ((size_t)n + 1) * sizeof(cl_int));
-    buffer_reserve(&a->key, total * key_bytes);
-    buffer_reserve(&a->state, total * sizeof(cl_int));
-    buffer_reserve(&a->history, total * c->history_bytes);
-    buffer_write(&a->begin, 0, ((size_t)n + 1) * sizeof(cl_int), c->begin);
-    buffer_write(
-        &a->key, 0, total * key_bytes, key_bytes == sizeof *c->key ? (const void *)c->key : small);
-    buffer_write(&a->state, 0, total * sizeof(cl_int), c->state);
-    buffer_write(&a->history, 0, total * c->history_bytes, plane);
+    buffer_put(&a->begin, ((size_t)n + 1) * sizeof(cl_int), c->begin);
+    buffer_put(
+        &a->key, total * key_bytes, key_bytes == sizeof *c->key ? (const void *)c->key : small);
+    buffer_put(&a->state, total * sizeof(cl_int), c->state);
+    buffer_put(&a->history, total * c->history_bytes, plane);
     free(plane);
     free(small);
 }

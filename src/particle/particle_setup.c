@@ -51,8 +51,7 @@ static void set_parameters(
         else contact_table_parameters(s->scene, a, b, wall, r, m, s->dt, row + k * width);
     }
     if (launch_has(launch, "table")) {
-        buffer_reserve(buffer, (size_t)n_row * (size_t)width * particles_real(&run->features));
-        reals_write(buffer, run->features.real_is_float, 0, (size_t)n_row * (size_t)width, row);
+        reals_put(buffer, run->features.real_is_float, (size_t)n_row * (size_t)width, row);
         launch_bind_buffer(launch, "table", buffer);
     } else {
         contact_table_set(launch, row);

@@ -40,19 +40,14 @@ static void upload_walls(struct wall_contacts *w, const struct scene *scene)
             bounds[6 * i + 3 + a] = fmin(walls->high[3 * i + a], 1e30);
         }
     for (size_t i = 0; i < n_wall; i++) material[i] = scene->wall[i].material;
-    buffer_reserve(&w->primitive, 12 * n * preal);
-    buffer_reserve(&w->bounds, 6 * n * preal);
-    buffer_reserve(&w->triangle_features, 6 * n * sizeof(cl_int));
-    buffer_reserve(&w->wall_of, n * sizeof(cl_int));
-    buffer_reserve(&w->material, n_wall * sizeof(cl_int));
     buffer_reserve(&w->room, n_wall * preal);
     buffer_reserve(&w->pose, n_wall * POSE_WIDTH * preal);
     buffer_reserve(&w->batch, WALL_BATCH * n_wall * POSE_WIDTH * preal);
-    reals_write(&w->primitive, is_float, 0, 12 * n, walls->primitive);
-    reals_write(&w->bounds, is_float, 0, 6 * n, bounds);
-    buffer_write(&w->triangle_features, 0, 6 * n * sizeof(cl_int), walls->features);
-    buffer_write(&w->wall_of, 0, n * sizeof(cl_int), walls->wall_of);
-    buffer_write(&w->material, 0, n_wall * sizeof(cl_int), material);
+    reals_put(&w->primitive, is_float, 12 * n, walls->primitive);
+    reals_put(&w->bounds, is_float, 6 * n, bounds);
+    buffer_put(&w->triangle_features, 6 * n * sizeof(cl_int), walls->features);
+    buffer_put(&w->wall_of, n * sizeof(cl_int), walls->wall_of);
+    buffer_put(&w->material, n_wall * sizeof(cl_int), material);
     free(bounds);
     free(material);
 }
