@@ -34,8 +34,7 @@ void check_output(const struct scene *scene)
         n += floor(scene->time.end / every[k] * (1 - 1e-9));
         printf(" and every %g s", every[k]);
     }
-    if (n > 0) printf(", %s%.0f in all", every[0] > 0 && every[1] > 0 ? "up to " : "", n + 2);
-    printf("\n");
+    printf(", %s%.10g in all\n", n > 0 && every[0] > 0 && every[1] > 0 ? "up to " : "", n + 2);
     for (int k = 0; k < scene->n_measure; k++)
         printf("    %s.csv every %g s\n", scene->measure[k].name, scene->measure[k].every);
 }

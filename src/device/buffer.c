@@ -144,6 +144,12 @@ void buffer_free(struct buffer *buffer)
     buffer_init(buffer, dev, buffer->name);
 }
 
+void buffer_put(struct buffer *buffer, size_t bytes, const void *data)
+{
+    buffer_reserve(buffer, bytes);
+    buffer_write(buffer, 0, bytes, data);
+}
+
 void buffer_zero(struct buffer *buffer)
 {
     if (buffer->mem) fill(buffer, 0);

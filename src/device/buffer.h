@@ -41,6 +41,8 @@ void buffer_free(struct buffer *buffer);
  * `bytes` within the asked size; 0 bytes is fine. */
 void buffer_write(struct buffer *buffer, size_t offset, size_t bytes, const void *data);
 void buffer_read(const struct buffer *buffer, size_t offset, size_t bytes, void *data);
+/* Makes room for `bytes` and writes them all. */
+void buffer_put(struct buffer *buffer, size_t bytes, const void *data);
 /* All bytes to 0. */
 void buffer_zero(struct buffer *buffer);
 

@@ -12,7 +12,9 @@ struct buffer_spec {
     size_t offset;    /* of the buffer in its struct */
 };
 
-/* Each with the smallest memory, so that it can be bound. base: the struct. */
+/* Names them all; base: the struct. */
+void buffers_init(struct device *dev, void *base, const struct buffer_spec *spec);
+/* The same, each with the smallest memory, so that it can be bound. */
 void buffers_create(struct device *dev, void *base, const struct buffer_spec *spec);
 void buffers_free(void *base, const struct buffer_spec *spec);
 

@@ -156,6 +156,16 @@ void launch_bind_buffer(struct launch *launch, const char *arg, const struct buf
     if (!launch_bind_buffer_if(launch, arg, buffer)) stop(launch, arg, "does not exist");
 }
 
+void launch_bind_all(struct launch *launch, const struct launch_binding *all)
+{
+    for (; all->arg; all++) launch_bind_buffer(launch, all->arg, all->buffer);
+}
+
+void launch_bind_all_if(struct launch *launch, const struct launch_binding *all)
+{
+    for (; all->arg; all++) launch_bind_buffer_if(launch, all->arg, all->buffer);
+}
+
 /* Bytes of a scalar type of this program; 0: not known here. */
 static size_t type_size(const struct launch *launch, const char *type)
 {
@@ -202,6 +212,31 @@ bool launch_set_real_if(struct launch *launch, const char *arg, double value)
                : launch_set_if(launch, arg, &value, sizeof value);
 }
 
+bool launch_set_count_if(struct launch *launch, const char *arg, int64_t value)
+{
+    if (value < 0 || value > INT32_MAX)
+        fail_stop(EXIT_DEVICE,
+            "kernel %s: %s is %lld, but a rank counts from 0 to 2147483647: use more ranks",
+            launch->name, arg, (long long)value);
+    return launch_set_int_if(launch, arg, (int32_t)value);
+}
+
+/* Names of the components of a vector argument. */
+struct component {
+    char arg[64];
+};
+static struct component component(const char *arg, int axis)
+{
+    struct component c;
+    snprintf(c.arg, sizeof c.arg, "%s_%c", arg, "xyz"[axis]);
+    return c;
+}
+
+void launch_set_vector_if(struct launch *launch, const char *arg, const double value[3])
+{
+    for (int a = 0; a < 3; a++) launch_set_real_if(launch, component(arg, a).arg, value[a]);
+}
+
 void launch_set(struct launch *launch, const char *arg, const void *value, size_t size)
 {
     if (!launch_set_if(launch, arg, value, size)) stop(launch, arg, "does not exist");
@@ -217,9 +252,19 @@ void launch_set_long(struct launch *launch, const char *arg, int64_t value)
     launch_set(launch, arg, &value, sizeof value);
 }
 
+void launch_set_count(struct launch *launch, const char *arg, int64_t value)
+{
+    if (!launch_set_count_if(launch, arg, value)) stop(launch, arg, "does not exist");
+}
+
 void launch_set_real(struct launch *launch, const char *arg, double value)
 {
     if (!launch_set_real_if(launch, arg, value)) stop(launch, arg, "does not exist");
+}
+
+void launch_set_vector(struct launch *launch, const char *arg, const double value[3])
+{
+    for (int a = 0; a < 3; a++) launch_set_real(launch, component(arg, a).arg, value[a]);
 }
 
 void launch_check(const struct launch *launch)

@@ -53,16 +53,31 @@ void launch_bind_buffer(struct launch *launch, const char *arg, const struct buf
 bool launch_bind_if(struct launch *launch, const char *arg, cl_mem mem);
 bool launch_bind_buffer_if(struct launch *launch, const char *arg, const struct buffer *buffer);
 
+/* The same for all rows of a table, which ends with {0}; the _if form leaves out those that the
+ * kernel does not have. */
+struct launch_binding {
+    const char *arg;
+    const struct buffer *buffer;
+};
+void launch_bind_all(struct launch *launch, const struct launch_binding *all);
+void launch_bind_all_if(struct launch *launch, const struct launch_binding *all);
+
 /* Set a value argument. The size has to be that of the declared type where launch.c knows it
  * (scalars of OpenCL C, real, preal). The same rules. launch_set_real converts to what the kernel
- * declares: float, double, real or preal. */
+ * declares: float, double, real or preal. launch_set_count sets an int to a count or an index of
+ * the host; one that an int cannot hold ends the run. launch_set_vector sets three values: arg_x,
+ * arg_y and arg_z. */
 void launch_set(struct launch *launch, const char *arg, const void *value, size_t size);
 void launch_set_int(struct launch *launch, const char *arg, int32_t value);
 void launch_set_long(struct launch *launch, const char *arg, int64_t value);
+void launch_set_count(struct launch *launch, const char *arg, int64_t value);
 void launch_set_real(struct launch *launch, const char *arg, double value);
+void launch_set_vector(struct launch *launch, const char *arg, const double value[3]);
 bool launch_set_if(struct launch *launch, const char *arg, const void *value, size_t size);
 bool launch_set_int_if(struct launch *launch, const char *arg, int32_t value);
+bool launch_set_count_if(struct launch *launch, const char *arg, int64_t value);
 bool launch_set_real_if(struct launch *launch, const char *arg, double value);
+void launch_set_vector_if(struct launch *launch, const char *arg, const double value[3]);
 
 /* Stops with the names of all arguments that are not bound. Once, after set-up; launch_run asserts
  * the same. */

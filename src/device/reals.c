@@ -29,3 +29,9 @@ void reals_write(struct buffer *buffer, bool is_float, size_t first, size_t n, c
         buffer_write(buffer, first * sizeof *value, n * sizeof *value, value);
     }
 }
+
+void reals_put(struct buffer *buffer, bool is_float, size_t n, const double *value)
+{
+    buffer_reserve(buffer, n * reals_size(is_float));
+    reals_write(buffer, is_float, 0, n, value);
+}

@@ -27,5 +27,7 @@ static inline void reals_set(void *data, bool is_float, size_t k, double value)
  * caller frees what is read. */
 double *reals_read(const struct buffer *buffer, bool is_float, size_t first, size_t n);
 void reals_write(struct buffer *buffer, bool is_float, size_t first, size_t n, const double *value);
+/* Makes room for n numbers and writes them all. */
+void reals_put(struct buffer *buffer, bool is_float, size_t n, const double *value);
 
 #endif

@@ -37,7 +37,7 @@ void scan_run(struct scan *scan, struct buffer *data, int64_t n)
     int64_t items[] = {n_block * SCAN_BLOCK / SCAN_ITEM, 1, n_block * SCAN_BLOCK / SCAN_ITEM};
     buffer_reserve(&scan->block, (size_t)n_block * sizeof(cl_int));
     for (int i = 0; i < 3; i++) {
-        launch_set_int(all[i], "n", (int)n);
+        launch_set_count(all[i], "n", n);
         launch_bind_buffer(all[i], "data", data);
         launch_run(all[i], items[i]);
     }

@@ -5,6 +5,7 @@
 
 #include "kernels/lattice/lattice_words.h"
 #include "comm/fail.h"
+#include "device/buffers.h"
 
 struct lattice_break {
     struct lattice *l;
@@ -15,6 +16,12 @@ struct lattice_break {
     struct launch *release;
     struct buffer fresh, released;
 };
+
+static const struct buffer_spec buffers[] = {
+    {"lattice strengths", offsetof(struct lattice_break, limit)},
+    {"lattice fates", offsetof(struct lattice_break, fate)},
+    {"lattice fresh breaks", offsetof(struct lattice_break, fresh)},
+    {"lattice released", offsetof(struct lattice_break, released)}, {0}};
 
 /* Shares of the links' energy that are released at the step's start and at its end
  * (kernels/lattice/link_release.cl). */
@@ -28,8 +35,6 @@ static void create_release(struct lattice_break *b)
     static const char *const source[] = {"link_release.cl", NULL};
     struct lattice *l = b->l;
     size_t n = (size_t)l->layout->plane;
-    buffer_init(&b->fresh, l->dev, "lattice fresh breaks");
-    buffer_init(&b->released, l->dev, "lattice released");
     if (!l->features.energy) return;
     char *text = lattice_features_options(&l->features, l->layout),
          *options = fail_format("%s -DWITH_SUMS=1", text);
@@ -64,11 +69,9 @@ struct lattice_break *lattice_break_create(struct lattice *l, const struct latti
     b->l = l;
     b->program = program_build(l->dev, l->comm, "breakage", text, source);
     free(text);
-    buffer_init(&b->limit, l->dev, "lattice strengths");
-    buffer_reserve(&b->limit, (size_t)n * lattice_v_bytes(l));
-    reals_write(&b->limit, l->features.real_is_float, 0, (size_t)n, limit);
+    buffers_init(l->dev, b, buffers);
+    reals_put(&b->limit, l->features.real_is_float, (size_t)n, limit);
     free(limit);
-    buffer_init(&b->fate, l->dev, "lattice fates");
     buffer_reserve(&b->fate, (size_t)l->layout->plane * sizeof(int32_t));
     buffer_zero(&b->fate);
     b->judge = lattice_launch(l, b->program, "link_break", NULL);
@@ -91,10 +94,7 @@ void lattice_break_free(struct lattice_break *b)
     launch_free(b->release);
     program_free(b->program);
     program_free(b->program_release);
-    buffer_free(&b->fresh);
-    buffer_free(&b->released);
-    buffer_free(&b->limit);
-    buffer_free(&b->fate);
+    buffers_free(b, buffers);
     free(b);
 }
 

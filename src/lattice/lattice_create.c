@@ -6,6 +6,7 @@
 
 #include "kernels/lattice/lattice_words.h"
 #include "comm/fail.h"
+#include "device/buffers.h"
 #include "lattice_break.h"
 #include "lattice_owners.h"
 
@@ -13,41 +14,39 @@ static const char *const sources[] = {"link_force.cl", "lattice_pack.cl", NULL};
 static const char *const sources_volume[] = {
     "link_force.cl", "link_volume.cl", "lattice_pack.cl", NULL};
 
-static void put_ints(
-    struct lattice *l, struct buffer *buffer, const char *name, const int *value, int64_t n)
-{
-    buffer_init(buffer, l->dev, name);
-    buffer_reserve(buffer, (size_t)n * sizeof *value);
-    buffer_write(buffer, 0, (size_t)n * sizeof *value, value);
-}
+#define ROW(member, name)                                                                          \
+    {                                                                                              \
+        "lattice " name, offsetof(struct lattice, member)                                          \
+    }
+static const struct buffer_spec buffers[] = {ROW(x, "x"), ROW(v, "v"), ROW(sum_x, "sums of x"),
+    ROW(sum_v, "sums of v"), ROW(pressure, "pressure"), ROW(ledger, "ledger"), ROW(word, "words"),
+    ROW(row, "rows"), ROW(info, "runs"), ROW(base, "bases"), ROW(force_list, "forces"),
+    ROW(volume_list, "volumes"), ROW(link, "links"), ROW(cell, "kinds"), ROW(kick, "kicks"), {0}};
+#undef ROW
 
-static void put_table(
-    struct lattice *l, struct buffer *buffer, const char *name, double *value, int64_t n)
+static void put_table(struct lattice *l, struct buffer *buffer, double *value, int64_t n)
 {
-    buffer_init(buffer, l->dev, name);
-    buffer_reserve(buffer, (size_t)n * lattice_v_bytes(l));
-    reals_write(buffer, l->features.real_is_float, 0, (size_t)n, value);
+    reals_put(buffer, l->features.real_is_float, (size_t)n, value);
     free(value);
 }
 
 static void create_state(struct lattice *l)
 {
     size_t n = (size_t)l->layout->plane, n_x = LATTICE_X(l->features.turn),
-           n_set = l->features.rk ? 3 : 2;
+           n_set = l->features.rk ? 3 : 2, x = lattice_x_bytes(l), v = lattice_v_bytes(l);
     size_t n_last = l->features.energy && l->features.nystrom ? LATTICE_V : 0,
            n_p = l->features.energy && l->features.link_damping ? 2 : 1;
-    struct buffer *all[] = {&l->x, &l->v, &l->sum_x, &l->sum_v, &l->pressure, &l->ledger};
-    static const char *const name[] = {"lattice x", "lattice v", "lattice sums of x",
-        "lattice sums of v", "lattice pressure", "lattice ledger"};
-    const size_t bytes[] = {n_set * n_x * n * lattice_x_bytes(l),
-        n_set * LATTICE_V * n * lattice_v_bytes(l), l->features.rk ? 9 * n * lattice_x_bytes(l) : 0,
-        l->features.rk ? (LATTICE_V + n_last) * n * lattice_v_bytes(l) : 0,
-        l->features.volume ? n_p * n * lattice_v_bytes(l) : 0,
-        l->features.energy ? LATTICE_LEDGER * n * sizeof(double) : 0};
-    for (int k = 0; k < 6; k++) {
-        buffer_init(all[k], l->dev, name[k]);
-        buffer_reserve(all[k], bytes[k]);
-        buffer_zero(all[k]);
+    const struct {
+        struct buffer *buffer;
+        size_t bytes;
+    } state[] = {{&l->x, n_set * n_x * n * x}, {&l->v, n_set * LATTICE_V * n * v},
+        {&l->sum_x, l->features.rk ? 9 * n * x : 0},
+        {&l->sum_v, l->features.rk ? (LATTICE_V + n_last) * n * v : 0},
+        {&l->pressure, l->features.volume ? n_p * n * v : 0},
+        {&l->ledger, l->features.energy ? LATTICE_LEDGER * n * sizeof(double) : 0}};
+    for (size_t k = 0; k < sizeof state / sizeof *state; k++) {
+        buffer_reserve(state[k].buffer, state[k].bytes);
+        buffer_zero(state[k].buffer);
     }
 }
 
@@ -55,19 +54,20 @@ static void create_tables(struct lattice *l, const struct lattice_cells *cells)
 {
     const struct lattice_layout *c = l->layout;
     int n = cells->n_kind;
-    put_ints(l, &l->word, "lattice words", c->word, c->plane);
-    put_ints(l, &l->row, "lattice rows", c->row, c->plane);
-    put_ints(l, &l->info, "lattice runs", c->info, c->n_run);
-    put_ints(l, &l->base, "lattice bases", c->base, 4 * (int64_t)c->n_run);
-    put_ints(l, &l->force_list, "lattice forces", c->force, c->n_force);
-    put_ints(l, &l->volume_list, "lattice volumes", c->volume, c->n_volume);
-    put_table(l, &l->link, "lattice links", lattice_features_links(cells, &l->options),
-        (int64_t)n * n * LINK_WIDTH);
-    put_table(l, &l->cell, "lattice kinds", lattice_features_cells(cells, &l->options),
-        (int64_t)n * CELL_WIDTH);
-    if (l->features.rk) put_table(l, &l->kick, "lattice kicks", fail_alloc(sizeof(double)), 1);
+    const struct {
+        struct buffer *buffer;
+        const int *value;
+        int64_t n;
+    } list[] = {{&l->word, c->word, c->plane}, {&l->row, c->row, c->plane},
+        {&l->info, c->info, c->n_run}, {&l->base, c->base, 4 * (int64_t)c->n_run},
+        {&l->force_list, c->force, c->n_force}, {&l->volume_list, c->volume, c->n_volume}};
+    for (size_t k = 0; k < sizeof list / sizeof *list; k++)
+        buffer_put(list[k].buffer, (size_t)list[k].n * sizeof *list[k].value, list[k].value);
+    put_table(l, &l->link, lattice_features_links(cells, &l->options), (int64_t)n * n * LINK_WIDTH);
+    put_table(l, &l->cell, lattice_features_cells(cells, &l->options), (int64_t)n * CELL_WIDTH);
+    if (l->features.rk) put_table(l, &l->kick, fail_alloc(sizeof(double)), 1);
     else
-        put_table(l, &l->kick, "lattice kicks", lattice_features_kicks(cells, &l->options),
+        put_table(l, &l->kick, lattice_features_kicks(cells, &l->options),
             (int64_t)(l->scheme->n + 2) * n * KICK_WIDTH);
     lattice_rows_create(l);
 }
@@ -116,6 +116,7 @@ struct lattice *lattice_create(struct device *dev, const struct comm *comm,
     l->program =
         program_build(dev, comm, "lattice", text, l->features.volume ? sources_volume : sources);
     free(text);
+    buffers_init(dev, l, buffers);
     create_state(l);
     create_tables(l, cells);
     l->force = lattice_launch(l, l->program, "link_force", &l->force_list);
@@ -124,9 +125,10 @@ struct lattice *lattice_create(struct device *dev, const struct comm *comm,
     if (l->scheme->first > 0)
         l->first = lattice_launch(l, l->program, "lattice_first", &l->force_list);
     if (comm->n_rank > 1)
-        l->halo = lattice_halo_create(dev, comm, l->program, l->layout, &l->x,
-            LATTICE_X(l->features.turn), lattice_x_bytes(l), &l->v,
-            l->features.link_damping ? LATTICE_V : 0, lattice_v_bytes(l),
+        l->halo = lattice_halo_create(comm, l->program, l->layout,
+            (struct lattice_planes){&l->x, LATTICE_X(l->features.turn), lattice_x_bytes(l)},
+            (struct lattice_planes){
+                &l->v, l->features.link_damping ? LATTICE_V : 0, lattice_v_bytes(l)},
             l->features.breakage ? &l->word : NULL);
     l->part =
         lattice_owners_part(cells, owner, comm->rank, l->halo ? l->halo->exchange.halo->n_send : 0);
@@ -140,8 +142,6 @@ void lattice_free(struct lattice *l)
 {
     if (!l) return;
     device_finish(l->dev);
-    struct buffer *all[] = {&l->x, &l->v, &l->sum_x, &l->sum_v, &l->pressure, &l->ledger, &l->word,
-        &l->info, &l->base, &l->force_list, &l->volume_list, &l->row, &l->link, &l->cell, &l->kick};
     lattice_halo_free(l->halo);
     lattice_break_free(l->breakage);
     lattice_rows_free(l);
@@ -149,7 +149,7 @@ void lattice_free(struct lattice *l)
     launch_free(l->volume);
     launch_free(l->first);
     program_free(l->program);
-    for (size_t k = 0; k < sizeof all / sizeof *all; k++) buffer_free(all[k]);
+    buffers_free(l, buffers);
     lattice_layout_free(l->layout);
     free(l);
 }

@@ -40,8 +40,7 @@ static double *places(const struct lattice *l, const struct lattice_cells *cells
 
 struct lattice_account *lattice_energy_create(struct lattice *l, const struct lattice_cells *cells)
 {
-    static const char *const source[] = {"link_energy.cl", NULL}, *const gravity[] = {"gravity_x",
-                                                                      "gravity_y", "gravity_z"};
+    static const char *const source[] = {"link_energy.cl", NULL};
     struct lattice_account *a = fail_alloc(sizeof *a);
     a->l = l;
     buffer_init(&a->place, l->dev, "lattice places");
@@ -54,8 +53,7 @@ struct lattice_account *lattice_energy_create(struct lattice *l, const struct la
     free(options);
     double *place = places(l, cells);
     size_t bytes = (size_t)l->layout->n_run * 4 * sizeof *place;
-    buffer_reserve(&a->place, bytes);
-    buffer_write(&a->place, 0, bytes, place);
+    buffer_put(&a->place, bytes, place);
     free(place);
     buffer_reserve(&a->partial, (size_t)SUMS_GROUPS * ACCOUNT_WIDTH * SUMS_WIDTH * sizeof(int64_t));
     a->launch = lattice_launch(l, a->program, "link_energies", &l->force_list);
@@ -64,7 +62,7 @@ struct lattice_account *lattice_energy_create(struct lattice *l, const struct la
     launch_bind_buffer(a->launch, "partial", &a->partial);
     launch_set_int(a->launch, "n", l->layout->n_force);
     if (l->features.energy && l->breakage) lattice_break_bind(l->breakage, a->launch);
-    for (int k = 0; k < 3; k++) launch_set_real(a->launch, gravity[k], l->options.gravity[k]);
+    launch_set_vector(a->launch, "gravity", l->options.gravity);
     struct lattice_energy start;
     lattice_energy_now(a, &start);
     lattice_energy_reopen(a, (const double[]){start.work, start.link_damping, start.mass_damping});

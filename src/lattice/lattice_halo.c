@@ -4,48 +4,39 @@
 
 #include "comm/fail.h"
 
-static void bind(struct launch *launch, const struct lattice_layout *layout, const struct buffer *x,
-    const struct buffer *v, const struct buffer *word)
-{
-    launch_set_long(launch, "plane", layout->plane);
-    launch_bind_buffer(launch, "x", x);
-    launch_bind_buffer(launch, "v", v);
-    if (word) launch_bind_buffer(launch, "word", word);
-}
-
-static void upload(
-    struct device *dev, struct buffer *buffer, const char *name, const int *data, int64_t n)
-{
-    buffer_init(buffer, dev, name);
-    buffer_reserve(buffer, (size_t)n * sizeof *data);
-    buffer_write(buffer, 0, (size_t)n * sizeof *data, data);
-}
-
-struct lattice_halo *lattice_halo_create(struct device *dev, const struct comm *comm,
-    const struct program *program, const struct lattice_layout *layout, const struct buffer *x,
-    int n_x, size_t x_bytes, const struct buffer *v, int n_v, size_t v_bytes,
+struct lattice_halo *lattice_halo_create(const struct comm *comm, const struct program *program,
+    const struct lattice_layout *layout, struct lattice_planes x, struct lattice_planes v,
     const struct buffer *word)
 {
     static const char *const name[] = {
         "lattice packed", "lattice arrived", "lattice send staging", "lattice receive staging"};
     struct lattice_halo *h = fail_alloc(sizeof *h);
+    struct device *dev = program->dev;
     struct exchange *out = &h->exchange;
-    upload(dev, &h->send, "lattice send", layout->send, layout->n_send);
-    upload(dev, &h->recv, "lattice receive", layout->recv, layout->n_recv);
+    buffer_init(&h->send, dev, "lattice send");
+    buffer_init(&h->recv, dev, "lattice receive");
+    buffer_put(&h->send, (size_t)layout->n_send * sizeof *layout->send, layout->send);
+    buffer_put(&h->recv, (size_t)layout->n_recv * sizeof *layout->recv, layout->recv);
     exchange_init(out, dev, name);
     exchange_plan(out, comm, layout->count_to);
     exchange_bind(
-        out, (size_t)n_x * x_bytes + (size_t)n_v * v_bytes + (word ? sizeof(int32_t) : 0), true);
+        out, (size_t)x.n * x.bytes + (size_t)v.n * v.bytes + (word ? sizeof(int32_t) : 0), true);
     h->pack = launch_create(program, "lattice_pack");
     h->unpack = launch_create(program, "lattice_unpack");
-    bind(h->pack, layout, x, v, word);
-    bind(h->unpack, layout, x, v, word);
-    launch_set_int(h->pack, "n", (int)layout->n_send);
-    launch_set_int(h->unpack, "n", (int)layout->n_recv);
-    launch_bind_buffer(h->pack, "index", &h->send);
-    launch_bind_buffer(h->unpack, "index", &h->recv);
-    launch_bind_buffer(h->pack, "record", &out->packed);
-    launch_bind_buffer(h->unpack, "record", &out->arrived);
+    const struct {
+        struct launch *launch;
+        int64_t n;
+        const struct buffer *index, *record;
+    } way[] = {{h->pack, layout->n_send, &h->send, &out->packed},
+        {h->unpack, layout->n_recv, &h->recv, &out->arrived}};
+    for (int i = 0; i < 2; i++) {
+        launch_set_long(way[i].launch, "plane", layout->plane);
+        launch_set_count(way[i].launch, "n", way[i].n);
+        launch_bind_all(
+            way[i].launch, (const struct launch_binding[]){{"x", x.buffer}, {"v", v.buffer},
+                               {"index", way[i].index}, {"record", way[i].record}, {0}});
+        if (word) launch_bind_buffer(way[i].launch, "word", word);
+    }
     return h;
 }
 

@@ -13,11 +13,16 @@ struct lattice_halo {
     struct launch *pack, *unpack;
 };
 
-/* n_x, n_v: numbers of each cell that travel, of so many bytes each. x, v: the buffers that hold
- * them; word: that of the cells' words where links break, else NULL. Collective. */
-struct lattice_halo *lattice_halo_create(struct device *dev, const struct comm *comm,
-    const struct program *program, const struct lattice_layout *layout, const struct buffer *x,
-    int n_x, size_t x_bytes, const struct buffer *v, int n_v, size_t v_bytes,
+/* What travels of each cell: the first `n` planes of a set in the buffer, numbers of `bytes`. */
+struct lattice_planes {
+    const struct buffer *buffer;
+    int n;
+    size_t bytes;
+};
+
+/* word: buffer of the cells' words where links break, else NULL. Collective. */
+struct lattice_halo *lattice_halo_create(const struct comm *comm, const struct program *program,
+    const struct lattice_layout *layout, struct lattice_planes x, struct lattice_planes v,
     const struct buffer *word);
 void lattice_halo_free(struct lattice_halo *h);
 

@@ -38,20 +38,19 @@ static const struct buffer_spec buffers[] = {{"segments", offsetof(struct assign
     {"pairs begin", offsetof(struct assigned, begin)},
     {"elements used", offsetof(struct assigned, used)}, {0}};
 
+static const struct buffer_spec side_buffers[] = {{"assigned pairs", offsetof(struct side, pair)},
+    {"assigned elements", offsetof(struct side, element)}, {0}};
+
 static void side_init(struct device *dev, struct side *side, int n_rank)
 {
-    buffer_init(&side->pair, dev, "assigned pairs");
-    buffer_init(&side->element, dev, "assigned elements");
-    buffer_reserve(&side->pair, 0);
-    buffer_reserve(&side->element, 0);
+    buffers_create(dev, side, side_buffers);
     side->n_pair = fail_alloc((size_t)n_rank * sizeof *side->n_pair);
     side->n_element = fail_alloc((size_t)n_rank * sizeof *side->n_element);
 }
 
 static void side_free(struct side *side)
 {
-    buffer_free(&side->pair);
-    buffer_free(&side->element);
+    buffers_free(side, side_buffers);
     free(side->n_pair);
     free(side->n_element);
 }
@@ -104,8 +103,7 @@ static void write_segments(struct assigned *a, const int64_t *begin, int n)
 {
     cl_int *at = fail_alloc(((size_t)n + 1) * sizeof *at);
     for (int s = 0; s <= n; s++) at[s] = (cl_int)begin[s];
-    buffer_reserve(&a->segment, ((size_t)n + 1) * sizeof *at);
-    buffer_write(&a->segment, 0, ((size_t)n + 1) * sizeof *at, at);
+    buffer_put(&a->segment, ((size_t)n + 1) * sizeof *at, at);
     free(at);
 }
 
@@ -119,26 +117,22 @@ static void order(
     buffer_reserve(&a->copy, n * sizeof(cl_int2));
     buffer_reserve(&a->place, n * sizeof(cl_int));
     write_segments(a, halo->recv_begin, halo->n_recv);
-    launch_set_int(a->rule, "n_owned", (int)l->n_owned);
+    launch_set_count(a->rule, "n_owned", l->n_owned);
     launch_set_int(a->rule, "n_segment", halo->n_recv);
-    launch_set_int(a->link, "n_incidence", (int)l->n_incidence);
+    launch_set_count(a->link, "n_incidence", l->n_incidence);
     for (int i = 0; i < 3; i++) {
-        launch_set_int(k[i], "n", (int)l->n_boundary);
-        launch_set_int(k[i], "first", (int)l->first_boundary);
-        launch_bind_buffer_if(k[i], "segment", &a->segment);
-        launch_bind_buffer_if(k[i], "row_begin", &l->row_begin);
-        launch_bind_buffer_if(k[i], "row", &l->row);
-        launch_bind_buffer_if(k[i], "pair_i", &l->pair_i);
-        launch_bind_buffer_if(k[i], "pair_j", &l->pair_j);
-        launch_bind_buffer_if(k[i], "copy", &a->copy);
-        launch_bind_buffer_if(k[i], "theirs", &a->theirs);
-        launch_bind_buffer_if(k[i], "place", &a->place);
-        launch_bind_buffer_if(k[i], "incidence", &l->incidence);
+        launch_set_count(k[i], "n", l->n_boundary);
+        launch_set_count(k[i], "first", l->first_boundary);
+        launch_bind_all_if(
+            k[i], (const struct launch_binding[]){{"segment", &a->segment},
+                      {"row_begin", &l->row_begin}, {"row", &l->row}, {"pair_i", &l->pair_i},
+                      {"pair_j", &l->pair_j}, {"copy", &a->copy}, {"theirs", &a->theirs},
+                      {"place", &a->place}, {"incidence", &l->incidence}, {0}});
     }
     launch_run(a->rule, l->n_boundary);
     l->n_mine = l->n_boundary - scan_total(scan, &a->theirs, l->n_boundary);
     l->n_lower = l->n_all; /* who computes a pair counts it */
-    launch_set_int(a->order, "n_mine", (int)l->n_mine);
+    launch_set_count(a->order, "n_mine", l->n_mine);
     launch_run(a->order, l->n_boundary);
     launch_run(a->link, l->n_incidence);
 }
@@ -169,15 +163,14 @@ static void list_elements(
 {
     int64_t n = e->begin[e->n_segment];
     buffer_reserve(&a->used, ((size_t)n + 1) * sizeof(cl_int));
-    launch_set_int(a->use, "n", (int)n);
+    launch_set_count(a->use, "n", n);
     launch_bind_buffer(a->use, "begin", &a->begin);
     launch_bind_buffer(a->use, "used", &a->used);
     launch_run(a->use, n);
     buffer_reserve(&side->element, (size_t)scan_total(scan, &a->used, n) * sizeof(cl_int));
-    launch_set_int(a->pick, "n", (int)n);
-    launch_bind_buffer(a->pick, "used", &a->used);
-    launch_bind_buffer(a->pick, "element", e->number);
-    launch_bind_buffer(a->pick, "list", &side->element);
+    launch_set_count(a->pick, "n", n);
+    launch_bind_all(a->pick, (const struct launch_binding[]){{"used", &a->used},
+                                 {"element", e->number}, {"list", &side->element}, {0}});
     launch_run(a->pick, n);
     read_counts(e, &a->used, side->n_element);
 }
@@ -188,21 +181,16 @@ static void list_side(struct assigned *a, struct scan *scan, const struct partic
     struct launch *k = a->list;
     int64_t n = e->begin[e->n_segment];
     write_segments(a, e->begin, e->n_segment);
-    buffer_reserve(&a->range, (size_t)e->n_segment * sizeof *e->range);
-    buffer_write(&a->range, 0, (size_t)e->n_segment * sizeof *e->range, e->range);
+    buffer_put(&a->range, (size_t)e->n_segment * sizeof *e->range, e->range);
     buffer_reserve(&a->begin, ((size_t)n + 1) * sizeof(cl_int));
-    const struct {
-        const char *name;
-        const struct buffer *buffer;
-    } bind[] = {{"segment", &a->segment}, {"range", &a->range}, {"element", e->number},
-        {"gid", &p->field[FIELD_GID].now}, {"row_begin", &l->row_begin}, {"row", &l->row},
-        {"row_gid", &l->row_gid}, {"incidence_begin", &l->incidence_begin},
-        {"incidence", &l->incidence}, {"begin", &a->begin}, {"list", &side->pair}};
-    for (size_t i = 0; i < sizeof bind / sizeof *bind; i++)
-        launch_bind_buffer(k, bind[i].name, bind[i].buffer);
-    launch_set_int(k, "n_element", (int)n);
-    launch_set_int(k, "n_owned", (int)l->n_owned);
-    launch_set_int(k, "first_theirs", (int)(l->first_boundary + l->n_mine));
+    launch_bind_all(k,
+        (const struct launch_binding[]){{"segment", &a->segment}, {"range", &a->range},
+            {"element", e->number}, {"gid", &p->field[FIELD_GID].now}, {"row_begin", &l->row_begin},
+            {"row", &l->row}, {"row_gid", &l->row_gid}, {"incidence_begin", &l->incidence_begin},
+            {"incidence", &l->incidence}, {"begin", &a->begin}, {"list", &side->pair}, {0}});
+    launch_set_count(k, "n_element", n);
+    launch_set_count(k, "n_owned", l->n_owned);
+    launch_set_count(k, "first_theirs", l->first_boundary + l->n_mine);
     launch_set_int(k, "is_theirs", side == &a->there);
     launch_set_int(k, "n_segment", e->n_segment);
     launch_set_int(k, "fill", 0);
@@ -224,8 +212,8 @@ static void list_here(struct assigned *a, struct scan *scan, const struct partic
         fail_alloc(n * sizeof *ghosts.range)};
     for (size_t s = 0; s < n; s++) ghosts.range[s] = (cl_int2){{0, (cl_int)l->n_owned}};
     buffer_reserve(&a->ghost, (size_t)p->n_ghost * sizeof(cl_int));
-    launch_set_int(a->number, "n", (int)p->n_ghost);
-    launch_set_int(a->number, "first", (int)l->n_owned);
+    launch_set_count(a->number, "n", p->n_ghost);
+    launch_set_count(a->number, "first", l->n_owned);
     launch_bind_buffer(a->number, "value", &a->ghost);
     launch_run(a->number, p->n_ghost);
     list_side(a, scan, p, l, &ghosts, &a->here);
@@ -258,15 +246,15 @@ static void set_moves(struct assigned *a, enum assigned_way way, const struct bu
     struct launch *k[] = {a->pack[way], a->unpack[way]};
     bool results = way == ASSIGNED_RESULTS;
     for (int back = 0; back < 2; back++) {
-        launch_set_int(k[back], "n", (int)(back ? x->n_recv : x->n_send));
+        launch_set_count(k[back], "n", back ? x->n_recv : x->n_send);
         launch_set_int(k[back], "is_pack", !back);
         launch_set_int(k[back], "width", width);
-        launch_set_int(k[back], "words", (int)(number / 4));
-        launch_set_int(k[back], "capacity", (int)capacity);
+        launch_set_count(k[back], "words", number / 4);
+        launch_set_count(k[back], "capacity", capacity);
         const struct side *side = results == !back ? &a->here : &a->there;
-        launch_bind_buffer(k[back], "index", results ? &side->pair : &side->element);
-        launch_bind_buffer(k[back], "plane", plane);
-        launch_bind_buffer(k[back], "record", back ? &x->arrived : &x->packed);
+        launch_bind_all(k[back],
+            (const struct launch_binding[]){{"index", results ? &side->pair : &side->element},
+                {"plane", plane}, {"record", back ? &x->arrived : &x->packed}, {0}});
     }
 }
 

@@ -37,14 +37,12 @@ struct cells *cells_create(struct device *dev, const struct features *features,
     launch_bind_buffer(c->bounds, "partial", &c->partial);
     struct launch *keyed[] = {c->count, c->order};
     for (int i = 0; i < 2; i++) {
-        launch_bind_buffer(keyed[i], "grid_real", &c->grid_real);
-        launch_bind_buffer(keyed[i], "grid_int", &c->grid_int);
-        launch_bind_buffer(keyed[i], "key", &c->key);
-        launch_bind_buffer(keyed[i], "count", &c->begin);
+        launch_bind_all(
+            keyed[i], (const struct launch_binding[]){{"grid_real", &c->grid_real},
+                          {"grid_int", &c->grid_int}, {"key", &c->key}, {"count", &c->begin}, {0}});
     }
-    launch_bind_buffer(c->fill, "key", &c->key);
-    launch_bind_buffer(c->fill, "cursor", &c->cursor);
-    launch_bind_buffer(c->fill, "member", &c->member);
+    launch_bind_all(c->fill, (const struct launch_binding[]){{"key", &c->key},
+                                 {"cursor", &c->cursor}, {"member", &c->member}, {0}});
     launch_bind_buffer(c->copy, "from", &c->begin);
     launch_bind_buffer(c->copy, "to", &c->cursor);
     return c;
@@ -64,10 +62,10 @@ struct cells_bounds cells_bounds(struct cells *c, const struct particles *p, int
     struct cells_bounds b = {
         {INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, INFINITY, 0, 0, false};
     if (n == 0) return b;
-    launch_set_int(c->bounds, "n", (int)n);
-    launch_bind_buffer(c->bounds, "position", &p->field[FIELD_STATE].now);
-    launch_bind_buffer(c->bounds, "motion", &p->field[FIELD_STATE].now);
-    launch_bind_buffer(c->bounds, "reach", &p->reach);
+    launch_set_count(c->bounds, "n", n);
+    launch_bind_all(
+        c->bounds, (const struct launch_binding[]){{"position", &p->field[FIELD_STATE].now},
+                       {"motion", &p->field[FIELD_STATE].now}, {"reach", &p->reach}, {0}});
     launch_run(c->bounds, BOUNDS_GROUPS * SELECT_GROUP);
     double *part =
         reals_read(&c->partial, c->features->position_is_float, 0, BOUNDS_GROUPS * BOUNDS_WIDTH);
@@ -128,9 +126,9 @@ static void write_grid(struct cells *c, const double *real, const cl_int *intege
 static void fill(struct cells *c, struct scan *scan, int64_t n, int64_t n_cell)
 {
     scan_run(scan, &c->begin, n_cell);
-    launch_set_int(c->copy, "n", (int)n_cell);
+    launch_set_count(c->copy, "n", n_cell);
     launch_run(c->copy, n_cell);
-    launch_set_int(c->fill, "n", (int)n);
+    launch_set_count(c->fill, "n", n);
     launch_run(c->fill, n);
 }
 
@@ -158,7 +156,7 @@ void cells_sort(struct cells *c, struct scan *scan, const struct particles *p, i
     }
     write_grid(c, real, integer);
     reserve(c, n);
-    launch_set_int(c->count, "n", (int)n);
+    launch_set_count(c->count, "n", n);
     launch_set_int(c->count, "n_level", c->n_level);
     launch_bind_buffer(c->count, "position", &p->field[FIELD_STATE].now);
     launch_bind_buffer(c->count, "reach", &p->reach);
@@ -178,8 +176,8 @@ void cells_order(struct cells *c, struct scan *scan, const struct particles *p, 
     c->n_cell++; /* for those that leave */
     write_grid(c, real, integer);
     reserve(c, n);
-    launch_set_int(c->order, "n", (int)n);
-    launch_set_int(c->order, "n_cell", (int)c->n_cell - 1);
+    launch_set_count(c->order, "n", n);
+    launch_set_count(c->order, "n_cell", c->n_cell - 1);
     launch_bind_buffer(c->order, "position", &p->field[FIELD_STATE].now);
     launch_bind_buffer(c->order, "keep", keep);
     launch_run(c->order, n);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "comm/fail.h"
+#include "device/buffers.h"
 #include "device/integer_sums.h"
 #include "particle.h"
 #include "scene/measure_columns.h"
@@ -30,14 +31,16 @@ struct energy {
     bool wraps;                /* some period has a component of gravity along it */
 };
 
+static const struct buffer_spec buffers[] = {{"sums", offsetof(struct energy, partial)},
+    {"gone elements", offsetof(struct energy, gone_id)},
+    {"gone walls", offsetof(struct energy, gone_wall)}, {0}};
+
 struct energy *energy_create(struct sim *s)
 {
     struct particle_run *run = s->particle;
     static const char *const source[] = {"sums.cl", NULL};
     struct energy *e = fail_alloc(sizeof *e);
-    buffer_init(&e->partial, s->dev, "sums");
-    buffer_init(&e->gone_id, s->dev, "gone elements");
-    buffer_init(&e->gone_wall, s->dev, "gone walls");
+    buffers_init(s->dev, e, buffers);
     for (int a = 0; a < 3; a++)
         e->wraps |= run->features.periodic[a] && fabs(s->scene->gravity[a]) > 0;
     if (!s->dev->fp64) return e;
@@ -50,12 +53,8 @@ struct energy *energy_create(struct sim *s)
     e->ledger = launch_create(e->program, "sums_ledger");
     e->gone = launch_create(e->program, "sums_gone");
     e->gone_walls = launch_create(e->program, "sums_gone_walls");
-    static const char *const gravity[] = {"gravity_x", "gravity_y", "gravity_z"},
-                             *const origin[] = {"origin_x", "origin_y", "origin_z"};
-    for (int a = 0; a < 3; a++) {
-        launch_set_real(e->elements, gravity[a], s->scene->gravity[a]);
-        launch_set_real(e->elements, origin[a], run->domain[a]);
-    }
+    launch_set_vector(e->elements, "gravity", s->scene->gravity);
+    launch_set_vector(e->elements, "origin", run->domain);
     buffer_reserve(&e->partial, (size_t)SUMS_GROUPS * SUMS_ELEMENT * SUMS_WIDTH * sizeof(int64_t));
     buffer_reserve(&e->gone_id, 0);
     buffer_reserve(&e->gone_wall, 0);
@@ -70,9 +69,7 @@ void energy_free(struct energy *e)
     struct launch *launch[] = {e->elements, e->ledger, e->gone, e->gone_walls};
     for (int i = 0; i < 4; i++) launch_free(launch[i]);
     program_free(e->program);
-    buffer_free(&e->partial);
-    buffer_free(&e->gone_id);
-    buffer_free(&e->gone_wall);
+    buffers_free(e, buffers);
     free(e);
 }
 
@@ -81,7 +78,7 @@ static void sum_elements(struct sim *s, struct sum sum[SUMS_ELEMENT])
     struct particle_run *run = s->particle;
     struct launch *k = run->energy->elements;
     const struct particles *p = run->particles;
-    launch_set_int(k, "n", (int)p->n_owned);
+    launch_set_count(k, "n", p->n_owned);
     launch_bind_buffer(k, "position", &p->field[FIELD_STATE].now);
     launch_bind_buffer(k, "motion", &p->field[FIELD_STATE].now);
     integer_sums_run(k, &run->energy->partial, SUMS_ELEMENT, sum);
@@ -94,11 +91,11 @@ static void set_contacts(struct launch *k, const struct sim *s, bool wall)
     struct particle_run *run = s->particle;
     const struct pair_list *l = &run->pairs->now;
     const struct wall_list *w = wall ? &run->wall_contacts->now : NULL;
-    launch_set_int(k, "n", (int)(w ? w->n : l->n_interior + l->n_mine));
-    launch_set_int(k, "n_first", (int)(w ? w->n : l->n_interior));
-    launch_set_int(k, "second", (int)(w ? 0 : l->first_boundary));
-    launch_set_int(k, "n_lower", (int)(w ? w->n_owned : l->n_lower));
-    launch_set_int(k, "capacity", (int)(w ? w->capacity : l->capacity));
+    launch_set_count(k, "n", w ? w->n : l->n_interior + l->n_mine);
+    launch_set_count(k, "n_first", w ? w->n : l->n_interior);
+    launch_set_count(k, "second", w ? 0 : l->first_boundary);
+    launch_set_count(k, "n_lower", w ? w->n_owned : l->n_lower);
+    launch_set_count(k, "capacity", w ? w->capacity : l->capacity);
     launch_bind_buffer(k, "element", w ? &w->element : &l->pair_i);
     launch_bind_buffer(k, "ledger", w ? &run->wall_contacts->ledger : &run->pairs->ledger);
 }
@@ -152,8 +149,7 @@ static int64_t share_gone(struct sim *s)
     for (size_t i = 0; i < n_all; i++)
         if (all[i] >= 0) all[n++] = all[i];
     qsort(all, (size_t)n, sizeof *all, by_number);
-    buffer_reserve(&run->energy->gone_id, (size_t)n * sizeof *all);
-    buffer_write(&run->energy->gone_id, 0, (size_t)n * sizeof *all, all);
+    buffer_put(&run->energy->gone_id, (size_t)n * sizeof *all, all);
     free(mine);
     free(all);
     return n;
@@ -165,7 +161,7 @@ static void remove_springs(struct sim *s, int64_t n_gone)
 {
     struct particle_run *run = s->particle;
     struct energy *e = run->energy;
-    launch_set_int(e->gone, "n_gone", (int)n_gone);
+    launch_set_count(e->gone, "n_gone", n_gone);
     launch_bind_buffer(e->gone, "gone", &e->gone_id);
     /* numbers of the old lists */
     launch_bind_buffer(e->gone, "gid", &run->particles->field[FIELD_GID].spare);
@@ -189,14 +185,13 @@ static void remove_walls(struct sim *s)
     for (int k = 0; k < w->walls->n_wall; k++)
         any |= gone[k] = w->room_host[k] >= 0 && !pose[k].active;
     if (any) {
-        buffer_reserve(&e->gone_wall, bytes);
-        buffer_write(&e->gone_wall, 0, bytes, gone);
-        launch_set_int(e->gone_walls, "n", (int)w->now.n);
-        launch_set_int(e->gone_walls, "capacity", (int)w->now.capacity);
-        launch_bind_buffer(e->gone_walls, "candidate", &w->now.candidate);
-        launch_bind_buffer(e->gone_walls, "wall_of", &w->wall_of);
-        launch_bind_buffer(e->gone_walls, "gone_wall", &e->gone_wall);
-        launch_bind_buffer(e->gone_walls, "ledger", &w->ledger);
+        buffer_put(&e->gone_wall, bytes, gone);
+        launch_set_count(e->gone_walls, "n", w->now.n);
+        launch_set_count(e->gone_walls, "capacity", w->now.capacity);
+        launch_bind_all(
+            e->gone_walls, (const struct launch_binding[]){{"candidate", &w->now.candidate},
+                               {"wall_of", &w->wall_of}, {"gone_wall", &e->gone_wall},
+                               {"ledger", &w->ledger}, {0}});
         integer_sums_run(e->gone_walls, &e->partial, 1, &e->total.removed);
     }
     free(gone);

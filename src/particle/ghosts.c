@@ -5,6 +5,10 @@
 #include <string.h>
 
 #include "comm/fail.h"
+#include "device/buffers.h"
+
+static const struct buffer_spec buffers[] = {{"ghost index", offsetof(struct ghosts, index)},
+    {"ghost pick", offsetof(struct ghosts, pick)}, {0}};
 
 struct ghosts *ghosts_create(struct device *dev, const struct comm *comm,
     const struct features *features, const struct program *lists, const double period[3])
@@ -16,17 +20,12 @@ struct ghosts *ghosts_create(struct device *dev, const struct comm *comm,
     static const char *const name[] = {
         "ghost pack", "ghosts arrived", "ghost send", "ghost receive"};
     exchange_init(&g->exchange, dev, name);
-    buffer_init(&g->index, dev, "ghost index");
-    buffer_init(&g->pick, dev, "ghost pick");
-    buffer_reserve(&g->index, 64);
-    buffer_reserve(&g->pick, 64);
+    buffers_create(dev, g, buffers);
     g->select = launch_create(lists, "select_ghosts");
     g->compact = launch_create(lists, "record_select");
     g->gather = launch_create(lists, "record_gather");
     g->pack = launch_create(lists, "record_gather");
-    launch_set_real_if(g->select, "period_x", period[0]);
-    launch_set_real_if(g->select, "period_y", period[1]);
-    launch_set_real_if(g->select, "period_z", period[2]);
+    launch_set_vector_if(g->select, "period", period);
     return g;
 }
 
@@ -34,8 +33,7 @@ void ghosts_free(struct ghosts *g)
 {
     if (!g) return;
     exchange_free(&g->exchange);
-    buffer_free(&g->index);
-    buffer_free(&g->pick);
+    buffers_free(g, buffers);
     launch_free(g->select);
     launch_free(g->compact);
     launch_free(g->gather);
@@ -72,22 +70,18 @@ static bool may_meet(const struct ghosts *g, const struct box *a, const struct b
 static int64_t select_for(struct ghosts *g, struct scan *scan, const struct particles *p, int rank,
     const struct box *box, struct buffer *piece)
 {
-    static const char *const low[] = {"low_x", "low_y", "low_z"}, *const high[] = {
-                                                                      "high_x", "high_y", "high_z"};
-    launch_set_int(g->select, "n", (int)p->n_owned);
+    launch_set_count(g->select, "n", p->n_owned);
     launch_set_int(g->select, "rank", rank);
-    launch_bind_buffer(g->select, "position", &p->field[FIELD_STATE].now);
-    launch_bind_buffer(g->select, "reach", &p->reach);
-    launch_bind_buffer(g->select, "at", &g->pick);
-    for (int a = 0; a < 3; a++) {
-        launch_set_real(g->select, low[a], box->low[a]);
-        launch_set_real(g->select, high[a], box->high[a]);
-    }
+    launch_bind_all(
+        g->select, (const struct launch_binding[]){{"position", &p->field[FIELD_STATE].now},
+                       {"reach", &p->reach}, {"at", &g->pick}, {0}});
+    launch_set_vector(g->select, "low", box->low);
+    launch_set_vector(g->select, "high", box->high);
     launch_set_real(g->select, "far_reach", box->reach);
     launch_run(g->select, p->n_owned);
     int64_t n = scan_total(scan, &g->pick, p->n_owned);
     buffer_reserve(piece, (size_t)n * sizeof(cl_int));
-    launch_set_int(g->compact, "n", (int)p->n_owned);
+    launch_set_count(g->compact, "n", p->n_owned);
     launch_bind_buffer(g->compact, "at", &g->pick);
     launch_bind_buffer(g->compact, "index", piece);
     launch_run(g->compact, p->n_owned);
@@ -98,11 +92,10 @@ static int64_t select_for(struct ghosts *g, struct scan *scan, const struct part
 static void bind_gather(
     struct ghosts *g, struct launch *gather, const struct buffer *from, size_t bytes)
 {
-    launch_set_int(gather, "n", (int)g->exchange.n_send);
-    launch_set_int(gather, "words", (int)(bytes / 4));
-    launch_bind_buffer(gather, "index", &g->index);
-    launch_bind_buffer(gather, "from", from);
-    launch_bind_buffer(gather, "to", &g->exchange.packed);
+    launch_set_count(gather, "n", g->exchange.n_send);
+    launch_set_count(gather, "words", bytes / 4);
+    launch_bind_all(gather, (const struct launch_binding[]){{"index", &g->index}, {"from", from},
+                                {"to", &g->exchange.packed}, {0}});
 }
 
 /* Sends rows of `from` picked by g->index to their neighbours and stores what comes in at row
@@ -141,8 +134,7 @@ static void choose(struct ghosts *g, struct scan *scan, const struct particles *
         buffer_read(&piece, 0, (size_t)count_to[r] * sizeof *index, index + n_send);
         n_send += count_to[r];
     }
-    buffer_reserve(&g->index, (size_t)n_send * sizeof(cl_int));
-    buffer_write(&g->index, 0, (size_t)n_send * sizeof(cl_int), index);
+    buffer_put(&g->index, (size_t)n_send * sizeof(cl_int), index);
     buffer_free(&piece);
     free(index);
 }
@@ -165,9 +157,8 @@ void ghosts_plan(struct ghosts *g, const struct owners *owners, struct scan *sca
     memcpy(mine.high, own->high, sizeof mine.high);
     comm_gather(comm, &mine, all, sizeof mine);
     launch_set_int(g->select, "n_node", owners->n_node);
-    launch_bind_buffer(g->select, "node", &owners->node);
-    launch_bind_buffer(g->select, "cut", &owners->cut);
-    launch_bind_buffer(g->select, "domain", &owners->domain);
+    launch_bind_all(g->select, (const struct launch_binding[]){{"node", &owners->node},
+                                   {"cut", &owners->cut}, {"domain", &owners->domain}, {0}});
     choose(g, scan, p, all, count_to);
     exchange_plan(&g->exchange, comm, count_to);
     p->n_ghost = g->exchange.n_recv;

@@ -6,6 +6,7 @@
 
 #include "contact_table.h"
 #include "comm/fail.h"
+#include "device/buffers.h"
 #include "particle.h"
 
 /* Several elements per work-item: most are then seen at a glance not to be the one. */
@@ -17,6 +18,11 @@ struct limit {
     struct buffer table, partial, partial_gid;
 };
 
+static const struct buffer_spec buffers[] = {
+    {"materials of the limit", offsetof(struct limit, table)},
+    {"limit", offsetof(struct limit, partial)},
+    {"limit, elements", offsetof(struct limit, partial_gid)}, {0}};
+
 static void write_table(struct sim *s, struct limit *limit)
 {
     struct particle_run *run = s->particle;
@@ -25,8 +31,7 @@ static void write_table(struct sim *s, struct limit *limit)
     double *row = fail_alloc(n_value * sizeof *row);
     for (int k = 0; k < n * n; k++)
         limit_material(s->scene, k / n, k % n, row + k * MATERIAL_WIDTH);
-    buffer_reserve(&limit->table, n_value * particles_real(&run->features));
-    reals_write(&limit->table, run->features.real_is_float, 0, n_value, row);
+    reals_put(&limit->table, run->features.real_is_float, n_value, row);
     free(row);
 }
 
@@ -50,53 +55,42 @@ struct limit *limit_create(struct sim *s)
     limit->program = program_build(s->dev, s->comm, "limit", options, sources);
     free(options);
     limit->launch = launch_create(limit->program, "step_limit");
-    buffer_init(&limit->table, s->dev, "materials of the limit");
-    buffer_init(&limit->partial, s->dev, "limit");
-    buffer_init(&limit->partial_gid, s->dev, "limit, elements");
+    buffers_init(s->dev, limit, buffers);
     buffer_reserve(&limit->partial, GROUPS_MOST * particles_real(&run->features));
     buffer_reserve(&limit->partial_gid, GROUPS_MOST * sizeof(int64_t));
     write_table(s, limit);
     launch_set_int(limit->launch, "n_material", s->scene->n_material);
     launch_set_int(limit->launch, "kind", run->first->n > 0 ? run->first->material[0] : 0);
-    static const char *const axis[] = {"period_x", "period_y", "period_z"};
-    for (int a = 0; a < 3; a++) launch_set_real_if(limit->launch, axis[a], run->period[a]);
+    launch_set_vector_if(limit->launch, "period", run->period);
     return limit;
 }
 
 void limit_free(struct limit *limit)
 {
     if (!limit) return;
-    buffer_free(&limit->table);
-    buffer_free(&limit->partial);
-    buffer_free(&limit->partial_gid);
+    buffers_free(limit, buffers);
     launch_free(limit->launch);
     program_free(limit->program);
     free(limit);
 }
-
-struct binding {
-    const char *name;
-    const struct buffer *buffer;
-};
 
 static void bind(struct sim *s, struct limit *limit)
 {
     struct particle_run *run = s->particle;
     const struct particles *p = run->particles;
     const struct wall_contacts *w = run->wall_contacts;
-    const struct binding pairs[] = {{"position", &p->field[FIELD_STATE].now},
-        {"motion", &p->field[FIELD_STATE].now}, {"gid", &p->field[FIELD_GID].now},
-        {"row_begin", &run->pairs->now.row_begin}, {"row", &run->pairs->now.row},
-        {"table", &limit->table}, {"partial", &limit->partial},
-        {"partial_gid", &limit->partial_gid}};
-    for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++)
-        launch_bind_buffer(limit->launch, pairs[i].name, pairs[i].buffer);
+    launch_bind_all(limit->launch,
+        (const struct launch_binding[]){{"position", &p->field[FIELD_STATE].now},
+            {"motion", &p->field[FIELD_STATE].now}, {"gid", &p->field[FIELD_GID].now},
+            {"row_begin", &run->pairs->now.row_begin}, {"row", &run->pairs->now.row},
+            {"table", &limit->table}, {"partial", &limit->partial},
+            {"partial_gid", &limit->partial_gid}, {0}});
     if (!w) return;
-    const struct binding walls[] = {{"wall_begin", &w->now.begin}, {"candidate", &w->now.candidate},
-        {"primitive", &w->primitive}, {"wall_of", &w->wall_of}, {"wall_material", &w->material},
-        {"pose", &w->pose}, {"keep", &w->keep}};
-    for (size_t i = 0; i < sizeof walls / sizeof *walls; i++)
-        launch_bind_buffer_if(limit->launch, walls[i].name, walls[i].buffer);
+    launch_bind_all_if(
+        limit->launch, (const struct launch_binding[]){{"wall_begin", &w->now.begin},
+                           {"candidate", &w->now.candidate}, {"primitive", &w->primitive},
+                           {"wall_of", &w->wall_of}, {"wall_material", &w->material},
+                           {"pose", &w->pose}, {"keep", &w->keep}, {0}});
 }
 
 /* Of this rank. */
@@ -132,7 +126,7 @@ struct limit_result limit_run(struct sim *s, double dt, double share)
     }
     if (run->particles->n_owned > 0) {
         bind(s, limit);
-        launch_set_int(limit->launch, "n_owned", (int)run->particles->n_owned);
+        launch_set_count(limit->launch, "n_owned", run->particles->n_owned);
         launch_set_real(limit->launch, "dt", dt);
         launch_set_real(limit->launch, "share", share);
         best = smallest(s, limit);

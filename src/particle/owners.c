@@ -23,17 +23,14 @@ struct owners *owners_create(struct device *dev, const struct comm *comm,
     o->comm = comm;
     o->features = features;
     buffers_create(dev, o, buffers);
-    buffer_reserve(&o->domain, 6 * particles_preal(features));
-    reals_write(&o->domain, features->position_is_float, 0, 6, domain);
+    reals_put(&o->domain, features->position_is_float, 6, domain);
     o->select = launch_create(lists, "select_owner");
     o->compact = launch_create(lists, "record_select");
     o->gather = launch_create(lists, "record_gather");
     o->copy = launch_create(lists, "record_copy");
     launch_set_int(o->select, "rank", comm->rank);
     launch_set_int(o->select, "remove", features->remove_outside);
-    launch_set_real_if(o->select, "period_x", period[0]);
-    launch_set_real_if(o->select, "period_y", period[1]);
-    launch_set_real_if(o->select, "period_z", period[2]);
+    launch_set_vector_if(o->select, "period", period);
     return o;
 }
 
@@ -57,10 +54,8 @@ void owners_set_tree(struct owners *o, const struct rcb *rcb)
         node[3 * k + 2] = rcb->right[k];
     }
     o->n_node = rcb->n_node;
-    buffer_reserve(&o->node, 3 * n * sizeof *node);
-    buffer_reserve(&o->cut, n * particles_preal(o->features));
-    buffer_write(&o->node, 0, 3 * n * sizeof *node, node);
-    reals_write(&o->cut, o->features->position_is_float, 0, n, rcb->cut);
+    buffer_put(&o->node, 3 * n * sizeof *node, node);
+    reals_put(&o->cut, o->features->position_is_float, n, rcb->cut);
     free(node);
 }
 
@@ -71,15 +66,12 @@ static int64_t find_leaving(struct owners *o, struct scan *scan, struct particle
     buffer_reserve(&o->owner, n * sizeof(cl_int));
     buffer_reserve(&o->stay, n * sizeof(cl_int));
     buffer_reserve(&o->leave, (n + 1) * sizeof(cl_int));
-    launch_set_int(o->select, "n", (int)n);
+    launch_set_count(o->select, "n", n);
     launch_set_int(o->select, "n_node", o->n_node);
-    launch_bind_buffer(o->select, "position", &p->field[FIELD_STATE].now);
-    launch_bind_buffer(o->select, "node", &o->node);
-    launch_bind_buffer(o->select, "cut", &o->cut);
-    launch_bind_buffer(o->select, "domain", &o->domain);
-    launch_bind_buffer(o->select, "owner", &o->owner);
-    launch_bind_buffer(o->select, "stay", &o->stay);
-    launch_bind_buffer(o->select, "leave", &o->leave);
+    launch_bind_all(
+        o->select, (const struct launch_binding[]){{"position", &p->field[FIELD_STATE].now},
+                       {"node", &o->node}, {"cut", &o->cut}, {"domain", &o->domain},
+                       {"owner", &o->owner}, {"stay", &o->stay}, {"leave", &o->leave}, {0}});
     launch_run(o->select, p->n_owned);
     return scan_total(scan, &o->leave, p->n_owned);
 }
@@ -90,11 +82,10 @@ static void *pick(struct owners *o, const struct buffer *from, size_t bytes, int
     void *rows = fail_alloc((size_t)n * bytes);
     if (bytes == 0) return rows;
     buffer_reserve(&o->picked, (size_t)n * bytes);
-    launch_set_int(o->gather, "n", (int)n);
-    launch_set_int(o->gather, "words", (int)(bytes / 4));
-    launch_bind_buffer(o->gather, "index", &o->index);
-    launch_bind_buffer(o->gather, "from", from);
-    launch_bind_buffer(o->gather, "to", &o->picked);
+    launch_set_count(o->gather, "n", n);
+    launch_set_count(o->gather, "words", bytes / 4);
+    launch_bind_all(o->gather, (const struct launch_binding[]){
+                                   {"index", &o->index}, {"from", from}, {"to", &o->picked}, {0}});
     launch_run(o->gather, n);
     buffer_read(&o->picked, 0, (size_t)n * bytes, rows);
     return rows;
@@ -127,7 +118,7 @@ static struct owners_arriving exchange(struct owners *o, struct scan *scan, stru
 {
     struct owners_leaving l = {.n = n_leave};
     buffer_reserve(&o->index, (size_t)n_leave * sizeof(cl_int));
-    launch_set_int(o->compact, "n", (int)p->n_owned);
+    launch_set_count(o->compact, "n", p->n_owned);
     launch_bind_buffer(o->compact, "at", &o->leave);
     launch_bind_buffer(o->compact, "index", &o->index);
     launch_run(o->compact, p->n_owned);
@@ -136,10 +127,8 @@ static struct owners_arriving exchange(struct owners *o, struct scan *scan, stru
         l.bytes[i] = p->field[i].bytes;
         l.field[i] = pick(o, &p->field[i].now, l.bytes[i], n_leave);
     }
-    owners_pick_contacts(
-        &l.pair, scan, &o->index, n_leave, pairs, NULL, particles_real(o->features));
-    owners_pick_contacts(
-        &l.wall, scan, &o->index, n_leave, NULL, walls, particles_real(o->features));
+    owners_pick_pairs(&l.pair, scan, &o->index, n_leave, pairs);
+    owners_pick_walls(&l.wall, scan, &o->index, n_leave, walls);
     remember_removed(o, &l, owner, n_leave);
     int64_t *bytes_to = fail_alloc((size_t)o->comm->n_rank * sizeof *bytes_to),
             *bytes_from = fail_alloc((size_t)o->comm->n_rank * sizeof *bytes_from);
@@ -174,7 +163,7 @@ void owners_move(struct owners *o, struct cells *cells, struct scan *scan, struc
     if (n_keep > 0) {
         launch_bind_buffer(o->copy, "from", &cells->member);
         launch_bind_buffer(o->copy, "to", &o->old_index);
-        launch_set_int(o->copy, "n", (int)n_keep);
+        launch_set_count(o->copy, "n", n_keep);
         launch_run(o->copy, n_keep);
     }
     particles_swap(p);
@@ -188,12 +177,8 @@ void owners_move(struct owners *o, struct cells *cells, struct scan *scan, struc
             &o->old_index, (size_t)n_keep * sizeof *number, (size_t)a.n * sizeof *number, number);
         free(number);
     }
-    if (pairs)
-        owners_store_contacts(&pairs->arrivals, &a.pair, a.n, sizeof(int64_t),
-            pairs->layout.history, particles_real(o->features));
-    if (walls)
-        owners_store_contacts(&walls->arrivals, &a.wall, a.n, sizeof(cl_int), walls->layout.history,
-            particles_real(o->features));
+    owners_store_pairs(pairs, &a.pair, a.n);
+    if (walls) owners_store_walls(walls, &a.wall, a.n);
     p->n_owned = n_new;
     p->n_ghost = 0;
     particles_reserve(p, o->features, n_new, n_new);

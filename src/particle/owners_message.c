@@ -16,75 +16,92 @@ static char *rows_of_planes(const char *plane, int width, int64_t capacity, int6
     return row;
 }
 
-static void bind_leave(
-    struct launch *k, const struct pairs *pairs, const struct wall_contacts *walls)
+/* What contacts leave from: pairs or walls. */
+struct source {
+    struct launch *leave; /* bound to the lists */
+    const char *key;      /* argument of `leave` that takes the keys */
+    size_t key_bytes;     /* 8 for gids, 4 for primitives */
+    const struct contact_layout *layout;
+    size_t real;
+};
+
+static void no_contacts(struct owners_contacts *c, int64_t n)
 {
-    if (pairs) {
-        const struct pair_list *l = &pairs->now;
-        launch_bind_buffer(k, "row_begin", &l->row_begin);
-        launch_bind_buffer(k, "row_gid", &l->row_gid);
-        launch_bind_buffer(k, "incidence_begin", &l->incidence_begin);
-        launch_bind_buffer(k, "incidence", &l->incidence);
-        launch_bind_buffer(k, "state", &l->state);
-        launch_bind_buffer(k, "history", &l->history);
-        launch_set_int(k, "capacity", (int)l->capacity);
-    } else {
-        const struct wall_list *l = &walls->now;
-        launch_bind_buffer(k, "wall_begin", &l->begin);
-        launch_bind_buffer(k, "candidate", &l->candidate);
-        launch_bind_buffer(k, "state", &l->state);
-        launch_bind_buffer(k, "history", &l->history);
-        launch_set_int(k, "capacity", (int)l->capacity);
-    }
+    *c = (struct owners_contacts){.begin = fail_alloc(((size_t)n + 1) * sizeof *c->begin)};
 }
 
-void owners_pick_contacts(struct owners_contacts *c, struct scan *scan, const struct buffer *index,
-    int64_t n, struct pairs *pairs, struct wall_contacts *walls, size_t real)
+static void pick(struct owners_contacts *c, struct scan *scan, const struct buffer *index,
+    int64_t n, const struct source *from)
 {
-    const struct contact_layout *layout = pairs ? &pairs->layout : walls ? &walls->layout : NULL;
-    size_t key_bytes = pairs ? sizeof(int64_t) : sizeof(cl_int);
-    memset(c, 0, sizeof *c);
-    c->begin = fail_alloc(((size_t)n + 1) * sizeof *c->begin);
-    if (!layout || !layout->remembers || n == 0) {
-        if (layout) c->history_bytes = (size_t)layout->history * real;
-        return;
-    }
-    struct launch *k = pairs ? pairs->leave : walls->leave;
+    struct launch *k = from->leave;
+    int width = from->layout->history;
+    size_t begin_bytes = ((size_t)n + 1) * sizeof(cl_int);
+    no_contacts(c, n);
+    c->history_bytes = (size_t)width * from->real;
+    if (!from->layout->remembers || n == 0) return;
     struct contact_arrivals out;
     contact_arrivals_init(index->dev, &out, "leaving contacts");
-    buffer_reserve(&out.begin, ((size_t)n + 1) * sizeof(cl_int));
-    bind_leave(k, pairs, walls);
-    launch_set_int(k, "n", (int)n);
+    buffer_reserve(&out.begin, begin_bytes);
+    launch_set_count(k, "n", n);
     launch_set_int(k, "fill", 0);
-    launch_set_int(k, "width", layout->history);
+    launch_set_int(k, "width", width);
     launch_set_int(k, "leave_capacity", 0);
-    launch_bind_buffer(k, "index", index);
-    launch_bind_buffer(k, "begin", &out.begin);
-    launch_bind_buffer(k, pairs ? "leave_gid" : "leave_candidate", &out.key);
-    launch_bind_buffer(k, "leave_state", &out.state);
-    launch_bind_buffer(k, "leave_history", &out.history);
+    launch_bind_all(k, (const struct launch_binding[]){{"index", index}, {"begin", &out.begin},
+                           {from->key, &out.key}, {"leave_state", &out.state},
+                           {"leave_history", &out.history}, {0}});
     launch_run(k, n);
     size_t total = (size_t)scan_total(scan, &out.begin, n);
-    c->history_bytes = (size_t)layout->history * real;
-    buffer_reserve(&out.key, total * key_bytes);
+    buffer_reserve(&out.key, total * from->key_bytes);
     buffer_reserve(&out.state, total * sizeof(cl_int));
     buffer_reserve(&out.history, total * c->history_bytes);
     launch_set_int(k, "fill", 1);
-    launch_set_int(k, "leave_capacity", (int)total);
+    launch_set_count(k, "leave_capacity", (int64_t)total);
     launch_run(k, n);
-    char *key = fail_alloc(total * key_bytes), *plane = fail_alloc(total * c->history_bytes);
+    char *key = fail_alloc(total * from->key_bytes), *plane = fail_alloc(total * c->history_bytes);
     c->key = fail_alloc(total * sizeof *c->key);
     c->state = fail_alloc(total * sizeof *c->state);
-    buffer_read(&out.begin, 0, ((size_t)n + 1) * sizeof(cl_int), c->begin);
-    buffer_read(&out.key, 0, total * key_bytes, key);
+    buffer_read(&out.begin, 0, begin_bytes, c->begin);
+    buffer_read(&out.key, 0, total * from->key_bytes, key);
     buffer_read(&out.state, 0, total * sizeof(cl_int), c->state);
     buffer_read(&out.history, 0, total * c->history_bytes, plane);
     for (size_t i = 0; i < total; i++)
-        c->key[i] = pairs ? ((int64_t *)(void *)key)[i] : ((cl_int *)(void *)key)[i];
-    c->history = rows_of_planes(plane, layout->history, (int64_t)total, (int64_t)total, real);
+        c->key[i] = from->key_bytes == sizeof *c->key ? ((int64_t *)(void *)key)[i]
+                                                      : ((cl_int *)(void *)key)[i];
+    c->history = rows_of_planes(plane, width, (int64_t)total, (int64_t)total, from->real);
     free(key);
     free(plane);
     contact_arrivals_free(&out);
+}
+
+void owners_pick_pairs(struct owners_contacts *c, struct scan *scan, const struct buffer *index,
+    int64_t n, const struct pairs *pairs)
+{
+    const struct pair_list *l = &pairs->now;
+    launch_bind_all(pairs->leave,
+        (const struct launch_binding[]){{"row_begin", &l->row_begin}, {"row_gid", &l->row_gid},
+            {"incidence_begin", &l->incidence_begin}, {"incidence", &l->incidence},
+            {"state", &l->state}, {"history", &l->history}, {0}});
+    launch_set_count(pairs->leave, "capacity", l->capacity);
+    pick(c, scan, index, n,
+        &(struct source){pairs->leave, "leave_gid", sizeof(int64_t), &pairs->layout,
+            particles_real(pairs->features)});
+}
+
+void owners_pick_walls(struct owners_contacts *c, struct scan *scan, const struct buffer *index,
+    int64_t n, const struct wall_contacts *walls)
+{
+    if (!walls) {
+        no_contacts(c, n);
+        return;
+    }
+    const struct wall_list *l = &walls->now;
+    launch_bind_all(walls->leave,
+        (const struct launch_binding[]){{"wall_begin", &l->begin}, {"candidate", &l->candidate},
+            {"state", &l->state}, {"history", &l->history}, {0}});
+    launch_set_count(walls->leave, "capacity", l->capacity);
+    pick(c, scan, index, n,
+        &(struct source){walls->leave, "leave_candidate", sizeof(cl_int), &walls->layout,
+            particles_real(walls->features)});
 }
 
 static size_t contact_bytes(const struct owners_contacts *c)
@@ -201,10 +218,11 @@ struct owners_arriving owners_unpack(
     return a;
 }
 
-void owners_store_contacts(struct contact_arrivals *a, const struct owners_contacts *c, int64_t n,
-    size_t key_bytes, int width, size_t real)
+/* key_bytes: 8 for gids, 4 for primitives; real: bytes of a number of the histories. */
+static void store(struct contact_arrivals *a, const struct owners_contacts *c, int64_t n,
+    size_t key_bytes, size_t real)
 {
-    size_t total = n > 0 ? (size_t)c->begin[n] : 0;
+    size_t total = n > 0 ? (size_t)c->begin[n] : 0, width = c->history_bytes / real;
     a->n = n;
     a->n_contact = (int64_t)total;
     if (n == 0) return;
@@ -212,21 +230,27 @@ void owners_store_contacts(struct contact_arrivals *a, const struct owners_conta
     cl_int *small = fail_alloc(total * sizeof *small);
     for (size_t k = 0; k < total; k++) {
         small[k] = (cl_int)c->key[k];
-        for (int w = 0; w < width; w++)
-            memcpy(plane + ((size_t)w * total + k) * real,
-                c->history + k * c->history_bytes + (size_t)w * real, real);
+        for (size_t w = 0; w < width; w++)
+            memcpy(
+                plane + (w * total + k) * real, c->history + k * c->history_bytes + w * real, real);
     }
-    buffer_reserve(&a->begin, ((size_t)n + 1) * sizeof(cl_int));
-    buffer_reserve(&a->key, total * key_bytes);
-    buffer_reserve(&a->state, total * sizeof(cl_int));
-    buffer_reserve(&a->history, total * c->history_bytes);
-    buffer_write(&a->begin, 0, ((size_t)n + 1) * sizeof(cl_int), c->begin);
-    buffer_write(
-        &a->key, 0, total * key_bytes, key_bytes == sizeof *c->key ? (const void *)c->key : small);
-    buffer_write(&a->state, 0, total * sizeof(cl_int), c->state);
-    buffer_write(&a->history, 0, total * c->history_bytes, plane);
+    buffer_put(&a->begin, ((size_t)n + 1) * sizeof(cl_int), c->begin);
+    buffer_put(
+        &a->key, total * key_bytes, key_bytes == sizeof *c->key ? (const void *)c->key : small);
+    buffer_put(&a->state, total * sizeof(cl_int), c->state);
+    buffer_put(&a->history, total * c->history_bytes, plane);
     free(plane);
     free(small);
+}
+
+void owners_store_pairs(struct pairs *pairs, const struct owners_contacts *c, int64_t n)
+{
+    store(&pairs->arrivals, c, n, sizeof(int64_t), particles_real(pairs->features));
+}
+
+void owners_store_walls(struct wall_contacts *walls, const struct owners_contacts *c, int64_t n)
+{
+    store(&walls->arrivals, c, n, sizeof(cl_int), particles_real(walls->features));
 }
 
 static void free_contacts(struct owners_contacts *c)

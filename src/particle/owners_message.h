@@ -30,10 +30,12 @@ struct owners_arriving {
     struct owners_contacts pair, wall;
 };
 
-/* Contacts with a memory of the n elements in `index` (device), from pairs or from walls (one of
- * them NULL). */
-void owners_pick_contacts(struct owners_contacts *c, struct scan *scan, const struct buffer *index,
-    int64_t n, struct pairs *pairs, struct wall_contacts *walls, size_t real);
+/* Contacts with a memory of the n elements in `index` (device); the caller frees what c points to.
+ * walls: NULL where there are none. */
+void owners_pick_pairs(struct owners_contacts *c, struct scan *scan, const struct buffer *index,
+    int64_t n, const struct pairs *pairs);
+void owners_pick_walls(struct owners_contacts *c, struct scan *scan, const struct buffer *index,
+    int64_t n, const struct wall_contacts *walls);
 
 /* Messages in ascending order of destination owner[i]; a negative owner goes nowhere. bytes_to
  * [n_rank] is filled. */
@@ -42,9 +44,9 @@ void *owners_pack(const struct owners_leaving *l, const int *owner, int n_rank, 
 struct owners_arriving owners_unpack(
     const struct owners_leaving *like, const void *data, int64_t bytes);
 
-/* To the device, for the carriers. key_bytes: 8 for gids, 4 for primitives. */
-void owners_store_contacts(struct contact_arrivals *a, const struct owners_contacts *c, int64_t n,
-    size_t key_bytes, int width, size_t real);
+/* Contacts of n elements that have arrived to the device, for the carriers. */
+void owners_store_pairs(struct pairs *pairs, const struct owners_contacts *c, int64_t n);
+void owners_store_walls(struct wall_contacts *walls, const struct owners_contacts *c, int64_t n);
 
 void owners_leaving_free(struct owners_leaving *l);
 void owners_arriving_free(struct owners_arriving *a);

@@ -62,24 +62,18 @@ static void build_rows(
     struct pair_list *l = &pairs->now;
     struct launch *rows = pairs->rows;
     buffer_reserve(&l->row_begin, ((size_t)l->n_all + 1) * sizeof(cl_int));
-    launch_set_int(rows, "n_owned", (int)l->n_owned);
-    launch_set_int(rows, "n_all", (int)l->n_all);
+    launch_set_count(rows, "n_owned", l->n_owned);
+    launch_set_count(rows, "n_all", l->n_all);
     launch_set_int(rows, "n_level", cells->n_level);
-    launch_bind_buffer(rows, "position", &p->field[FIELD_STATE].now);
-    launch_bind_buffer(rows, "gid", &p->field[FIELD_GID].now);
-    launch_bind_buffer(rows, "reach", &p->reach);
-    launch_bind_buffer(rows, "grid_real", &cells->grid_real);
-    launch_bind_buffer(rows, "grid_int", &cells->grid_int);
-    launch_bind_buffer(rows, "cell_begin", &cells->begin);
-    launch_bind_buffer(rows, "member", &cells->member);
-    launch_set_real_if(rows, "period_x", cells->period[0]);
-    launch_set_real_if(rows, "period_y", cells->period[1]);
-    launch_set_real_if(rows, "period_z", cells->period[2]);
+    launch_bind_all(rows, (const struct launch_binding[]){{"position", &p->field[FIELD_STATE].now},
+                              {"gid", &p->field[FIELD_GID].now}, {"reach", &p->reach},
+                              {"grid_real", &cells->grid_real}, {"grid_int", &cells->grid_int},
+                              {"cell_begin", &cells->begin}, {"member", &cells->member}, {0}});
+    launch_set_vector_if(rows, "period", cells->period);
     buffer_reserve(&pairs->found, (size_t)l->n_all * ROW_FOUND * sizeof(cl_int));
-    launch_bind_buffer(rows, "found", &pairs->found);
-    launch_bind_buffer(rows, "begin", &l->row_begin);
-    launch_bind_buffer(rows, "row", &l->row);
-    launch_bind_buffer(rows, "row_gid", &l->row_gid);
+    launch_bind_all(
+        rows, (const struct launch_binding[]){{"found", &pairs->found}, {"begin", &l->row_begin},
+                  {"row", &l->row}, {"row_gid", &l->row_gid}, {0}});
     for (int fill = 0; fill < 2; fill++) {
         launch_set_int(rows, "fill", fill);
         launch_run(rows, l->n_all);
@@ -97,16 +91,13 @@ static void count_pairs(struct pairs *pairs, struct scan *scan, const struct par
     struct buffer *counted[] = {&l->split, &l->up_begin, &pairs->interior, &pairs->boundary};
     for (int i = 0; i < 4; i++) buffer_reserve(counted[i], per_element);
     buffer_reserve(&l->incidence_begin, ((size_t)l->n_owned + 1) * sizeof(cl_int));
-    launch_set_int(pairs->count, "n_owned", (int)l->n_owned);
-    launch_set_int(pairs->count, "n_all", (int)l->n_all);
-    launch_bind_buffer(pairs->count, "gid", &p->field[FIELD_GID].now);
-    launch_bind_buffer(pairs->count, "row_begin", &l->row_begin);
-    launch_bind_buffer(pairs->count, "row", &l->row);
-    launch_bind_buffer(pairs->count, "row_gid", &l->row_gid);
-    launch_bind_buffer(pairs->count, "split", &l->split);
-    launch_bind_buffer(pairs->count, "interior", &pairs->interior);
-    launch_bind_buffer(pairs->count, "boundary", &pairs->boundary);
-    launch_bind_buffer(pairs->count, "incidence", &l->incidence_begin);
+    launch_set_count(pairs->count, "n_owned", l->n_owned);
+    launch_set_count(pairs->count, "n_all", l->n_all);
+    launch_bind_all(
+        pairs->count, (const struct launch_binding[]){{"gid", &p->field[FIELD_GID].now},
+                          {"row_begin", &l->row_begin}, {"row", &l->row}, {"row_gid", &l->row_gid},
+                          {"split", &l->split}, {"interior", &pairs->interior},
+                          {"boundary", &pairs->boundary}, {"incidence", &l->incidence_begin}, {0}});
     launch_run(pairs->count, l->n_all);
     l->n_interior = scan_total(scan, &pairs->interior, l->n_all);
     l->n_boundary = l->n_mine = scan_total(scan, &pairs->boundary, l->n_all);
@@ -144,25 +135,23 @@ static void fill_pairs(struct pairs *pairs, const struct particles *p)
     buffer_reserve(&l->pair_j, capacity * sizeof(cl_int));
     buffer_reserve(&l->incidence, (size_t)l->n_incidence * sizeof(cl_int));
     reserve_results(pairs, real);
-    launch_set_int(pairs->fill, "n_all", (int)l->n_all);
-    launch_set_int(pairs->fill, "first_boundary", (int)l->first_boundary);
-    launch_set_int(pairs->link, "n_owned", (int)l->n_owned);
+    launch_set_count(pairs->fill, "n_all", l->n_all);
+    launch_set_count(pairs->fill, "first_boundary", l->first_boundary);
+    launch_set_count(pairs->link, "n_owned", l->n_owned);
     launch_bind_buffer(pairs->link, "gid", &p->field[FIELD_GID].now);
     launch_bind_buffer(pairs->link, "row_gid", &l->row_gid);
-    launch_set_int(pairs->link, "blank", (int)l->capacity - 1);
+    launch_set_count(pairs->link, "blank", l->capacity - 1);
     launch_bind_buffer(pairs->link, "incidence_begin", &l->incidence_begin);
     launch_bind_buffer(pairs->link, "incidence", &l->incidence);
     struct launch *both[] = {pairs->fill, pairs->link};
     for (int i = 0; i < 2; i++) {
-        launch_bind_buffer(both[i], "row_begin", &l->row_begin);
-        launch_bind_buffer(both[i], "row", &l->row);
-        launch_bind_buffer(both[i], "split", &l->split);
-        launch_bind_buffer(both[i], "up_begin", &l->up_begin);
+        launch_bind_all(
+            both[i], (const struct launch_binding[]){{"row_begin", &l->row_begin}, {"row", &l->row},
+                         {"split", &l->split}, {"up_begin", &l->up_begin}, {0}});
     }
-    launch_bind_buffer(pairs->fill, "interior", &pairs->interior);
-    launch_bind_buffer(pairs->fill, "boundary", &pairs->boundary);
-    launch_bind_buffer(pairs->fill, "pair_i", &l->pair_i);
-    launch_bind_buffer(pairs->fill, "pair_j", &l->pair_j);
+    launch_bind_all(pairs->fill,
+        (const struct launch_binding[]){{"interior", &pairs->interior},
+            {"boundary", &pairs->boundary}, {"pair_i", &l->pair_i}, {"pair_j", &l->pair_j}, {0}});
     launch_run(pairs->fill, l->n_all);
     launch_run(pairs->link, l->n_owned);
     if (!pairs->layout.remembers) return;
@@ -195,26 +184,22 @@ void pairs_carry(struct pairs *pairs, const struct particles *p, const struct bu
     struct pair_list *l = &pairs->now, *o = &pairs->old;
     struct launch *k = pairs->carry;
     if (!pairs->layout.remembers) return;
-    launch_set_int(k, "n_owned", (int)l->n_owned);
-    launch_set_int(k, "n_interior", (int)l->n_interior);
-    launch_set_int(k, "first_boundary", (int)l->first_boundary);
-    launch_set_int(k, "end", (int)(l->first_boundary + l->n_boundary));
-    launch_set_int(k, "n_old", (int)o->n_owned);
+    launch_set_count(k, "n_owned", l->n_owned);
+    launch_set_count(k, "n_interior", l->n_interior);
+    launch_set_count(k, "first_boundary", l->first_boundary);
+    launch_set_count(k, "end", l->first_boundary + l->n_boundary);
+    launch_set_count(k, "n_old", o->n_owned);
     launch_set_int(k, "width", pairs->layout.history);
-    launch_set_int(k, "capacity", (int)l->capacity);
-    launch_set_int(k, "old_capacity", (int)o->capacity);
-    launch_set_int(k, "arrival_capacity", (int)pairs->arrivals.n_contact);
-    const struct {
-        const char *name;
-        const struct buffer *buffer;
-    } bind[] = {{"gid", &p->field[FIELD_GID].now}, {"pair_i", &l->pair_i}, {"pair_j", &l->pair_j},
-        {"old_index", old_index}, {"old_row_begin", &o->row_begin}, {"old_row_gid", &o->row_gid},
-        {"old_incidence_begin", &o->incidence_begin}, {"old_incidence", &o->incidence},
-        {"arrival_begin", &pairs->arrivals.begin}, {"arrival_gid", &pairs->arrivals.key},
-        {"arrival_state", &pairs->arrivals.state}, {"arrival_history", &pairs->arrivals.history},
-        {"old_state", &o->state}, {"old_history", &o->history}, {"state", &l->state},
-        {"history", &l->history}};
-    for (size_t i = 0; i < sizeof bind / sizeof *bind; i++)
-        launch_bind_buffer(k, bind[i].name, bind[i].buffer);
+    launch_set_count(k, "capacity", l->capacity);
+    launch_set_count(k, "old_capacity", o->capacity);
+    launch_set_count(k, "arrival_capacity", pairs->arrivals.n_contact);
+    launch_bind_all(k,
+        (const struct launch_binding[]){{"gid", &p->field[FIELD_GID].now}, {"pair_i", &l->pair_i},
+            {"pair_j", &l->pair_j}, {"old_index", old_index}, {"old_row_begin", &o->row_begin},
+            {"old_row_gid", &o->row_gid}, {"old_incidence_begin", &o->incidence_begin},
+            {"old_incidence", &o->incidence}, {"arrival_begin", &pairs->arrivals.begin},
+            {"arrival_gid", &pairs->arrivals.key}, {"arrival_state", &pairs->arrivals.state},
+            {"arrival_history", &pairs->arrivals.history}, {"old_state", &o->state},
+            {"old_history", &o->history}, {"state", &l->state}, {"history", &l->history}, {0}});
     launch_run(k, l->first_boundary + l->n_boundary);
 }

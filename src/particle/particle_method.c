@@ -4,8 +4,7 @@
 static bool stale(struct sim *s)
 {
     struct particle_run *run = s->particle;
-    return run->wall_contacts &&
-           wall_contacts_stale(run->wall_contacts, s->step, run->box, run->box + 3);
+    return run->wall_contacts && wall_contacts_stale(run->wall_contacts, s->step, run->box);
 }
 
 const struct step_ops particle_ops = {

@@ -89,14 +89,13 @@ static void make_room(struct sim *s)
     size_t preal = particles_preal(&run->features);
     buffer_reserve(&p->reference, 4 * preal * (size_t)p->n_owned);
     particles_reserve(p, &run->features, p->n_owned, p->n_owned);
-    launch_set_int(room, "n", (int)p->n_owned);
+    launch_set_count(room, "n", p->n_owned);
     launch_set_real(room, "skin", run->skin);
     launch_set_real(room, "horizon", run->horizon);
     launch_set_real(room, "bond_range", run->features.bond_range);
-    launch_bind_buffer(room, "position", &p->field[FIELD_STATE].now);
-    launch_bind_buffer(room, "motion", &p->field[FIELD_STATE].now);
-    launch_bind_buffer(room, "reference", &p->reference);
-    launch_bind_buffer(room, "reach", &p->reach);
+    launch_bind_all(room, (const struct launch_binding[]){{"position", &p->field[FIELD_STATE].now},
+                              {"motion", &p->field[FIELD_STATE].now}, {"reference", &p->reference},
+                              {"reach", &p->reach}, {0}});
     launch_run(room, p->n_owned);
 }
 
@@ -124,8 +123,8 @@ void particle_lists(struct sim *s, int64_t step)
     pairs_build(run->pairs, run->cells, run->scan, p);
     if (run->assigned) assigned_build(run->assigned, run->scan, p, run->pairs, run->ghosts);
     if (run->wall_contacts)
-        wall_contacts_build(run->wall_contacts, run->scan, p, step, (int)ceil(run->horizon / s->dt),
-            run->box, run->box + 3);
+        wall_contacts_build(
+            run->wall_contacts, run->scan, p, step, (int)ceil(run->horizon / s->dt), run->box);
     watch_reset(&s->watch, s->comm, &p->flags);
     run->built_at = step;
     const struct pair_list *l = &run->pairs->now;

@@ -51,8 +51,7 @@ static void set_parameters(
         else contact_table_parameters(s->scene, a, b, wall, r, m, s->dt, row + k * width);
     }
     if (launch_has(launch, "table")) {
-        buffer_reserve(buffer, (size_t)n_row * (size_t)width * particles_real(&run->features));
-        reals_write(buffer, run->features.real_is_float, 0, (size_t)n_row * (size_t)width, row);
+        reals_put(buffer, run->features.real_is_float, (size_t)n_row * (size_t)width, row);
         launch_bind_buffer(launch, "table", buffer);
     } else {
         contact_table_set(launch, row);
@@ -69,9 +68,7 @@ static void set_motion(struct sim *s, struct launch *launch)
            m = 4.0 / 3.0 * M_PI * r * r * r * s->scene->material[run->first->material[0]].density;
     launch_set_real_if(launch, "radius", r);
     launch_set_real_if(launch, "inverse_m", 1 / m);
-    launch_set_real(launch, "gravity_x", s->scene->gravity[0]);
-    launch_set_real(launch, "gravity_y", s->scene->gravity[1]);
-    launch_set_real(launch, "gravity_z", s->scene->gravity[2]);
+    launch_set_vector(launch, "gravity", s->scene->gravity);
     launch_set_real(launch, "dt", s->dt);
     launch_set_real(launch, "half_dt", 0.5 * s->dt);
     launch_set_real(launch, "margin_dt", WATCH_MARGIN * s->dt);
@@ -98,8 +95,7 @@ static void create_kernels(struct sim *s)
     set_parameters(s, run->pair_force, &run->table_pair, false, run->features.materials);
     if (run->wall_force)
         set_parameters(s, run->wall_force, &run->table_wall, true, run->features.wall_table);
-    static const char *const axis[] = {"period_x", "period_y", "period_z"};
-    for (int a = 0; a < 3; a++) launch_set_real_if(run->pair_force, axis[a], run->period[a]);
+    launch_set_vector_if(run->pair_force, "period", run->period);
     launch_set_real(run->pair_force, "dt", s->dt);
     if (run->wall_force) launch_set_real(run->wall_force, "dt", s->dt);
     set_motion(s, run->gather);
@@ -182,8 +178,13 @@ void particle_setup(struct sim *s)
         run->assigned = assigned_create(s->dev, s->comm, run->program_assign, run->program_lists,
             particles_real(&run->features));
     if (run->features.walls)
-        run->wall_contacts = wall_contacts_create(s->dev, s->comm, &run->features, s->scene,
-            run->walls, s->dt, run->program_lists, run->program_wall);
+        run->wall_contacts = wall_contacts_create(&(struct wall_setup){.comm = s->comm,
+            .features = &run->features,
+            .scene = s->scene,
+            .walls = run->walls,
+            .dt = s->dt,
+            .lists = run->program_lists,
+            .force = run->program_wall});
     run->energy = energy_create(s);
     run->horizon = HORIZON_STEPS * s->dt;
     if (s->from) particle_resume(s);

@@ -18,8 +18,8 @@ static void launch_pairs(
 {
     struct particle_run *run = s->particle;
     if (n > 0) {
-        launch_set_int(run->pair_force, "first", (int)first);
-        launch_set_int(run->pair_force, "end", (int)(first + n));
+        launch_set_count(run->pair_force, "first", first);
+        launch_set_count(run->pair_force, "end", first + n);
     }
     if (n > 0 || done) launch_run_on(run->pair_force, s->dev->compute, n, wait, done);
 }
@@ -54,7 +54,7 @@ static void launch_walls(struct sim *s)
     struct wall_contacts *w = run->wall_contacts;
     if (!w || w->now.n == 0) return;
     if (run->features.triangle) wall_contacts_select(w, run->particles);
-    launch_set_int(run->wall_force, "n_candidate", (int)w->now.n);
+    launch_set_count(run->wall_force, "n_candidate", w->now.n);
     launch_run(run->wall_force, w->now.n);
 }
 

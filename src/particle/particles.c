@@ -5,6 +5,20 @@
 #include <string.h>
 
 #include "comm/fail.h"
+#include "device/buffers.h"
+
+#define NOW(k) offsetof(struct particles, field[k].now)
+#define SPARE(k) offsetof(struct particles, field[k].spare)
+static const struct buffer_spec field_buffers[] = {{"state", NOW(FIELD_STATE)},
+    {"state, spare", SPARE(FIELD_STATE)}, {"gid", NOW(FIELD_GID)}, {"gid, spare", SPARE(FIELD_GID)},
+    {"orientation", NOW(FIELD_ORIENTATION)}, {"orientation, spare", SPARE(FIELD_ORIENTATION)}, {0}};
+#undef NOW
+#undef SPARE
+static const struct buffer_spec other_buffers[] = {
+    {"reference", offsetof(struct particles, reference)},
+    {"reach", offsetof(struct particles, reach)}, {"force", offsetof(struct particles, force)},
+    {"torque", offsetof(struct particles, torque)}, {"flags", offsetof(struct particles, flags)},
+    {0}};
 
 static size_t state_bytes(const struct features *f)
 {
@@ -14,24 +28,12 @@ static size_t state_bytes(const struct features *f)
 struct particles *particles_create(
     struct device *dev, const struct features *features, const struct program *lists)
 {
-    static const char *const name[FIELD_N][2] = {
-        {"state", "state, spare"}, {"gid", "gid, spare"}, {"orientation", "orientation, spare"}};
     struct particles *p = fail_alloc(sizeof *p);
     p->field[FIELD_STATE].bytes = state_bytes(features);
     p->field[FIELD_GID].bytes = sizeof(int64_t);
     p->field[FIELD_ORIENTATION].bytes = features->orientation ? 4 * particles_real(features) : 0;
-    for (int i = 0; i < FIELD_N; i++) {
-        p->field[i].name = name[i][0];
-        buffer_init(&p->field[i].now, dev, name[i][0]);
-        buffer_init(&p->field[i].spare, dev, name[i][1]);
-        buffer_reserve(&p->field[i].now, 0);
-        buffer_reserve(&p->field[i].spare, 0);
-    }
-    buffer_init(&p->reference, dev, "reference");
-    buffer_init(&p->reach, dev, "reach");
-    buffer_init(&p->force, dev, "force");
-    buffer_init(&p->torque, dev, "torque");
-    buffer_init(&p->flags, dev, "flags");
+    buffers_create(dev, p, field_buffers);
+    buffers_init(dev, p, other_buffers);
     buffer_reserve(&p->flags, FLAG_N * sizeof(cl_int));
     p->gather = launch_create(lists, "record_gather");
     p->copy = launch_create(lists, "record_copy");
@@ -41,12 +43,8 @@ struct particles *particles_create(
 void particles_free(struct particles *p)
 {
     if (!p) return;
-    for (int i = 0; i < FIELD_N; i++) {
-        buffer_free(&p->field[i].now);
-        buffer_free(&p->field[i].spare);
-    }
-    struct buffer *other[] = {&p->reference, &p->reach, &p->force, &p->torque, &p->flags};
-    for (int i = 0; i < 5; i++) buffer_free(other[i]);
+    buffers_free(p, field_buffers);
+    buffers_free(p, other_buffers);
     launch_free(p->gather);
     launch_free(p->copy);
     free(p);
@@ -98,11 +96,11 @@ void particles_permute(struct particles *p, const struct buffer *index, int64_t 
 {
     for (int i = 0; i < FIELD_N; i++) {
         if (p->field[i].bytes == 0) continue;
-        launch_set_int(p->gather, "n", (int)n);
-        launch_set_int(p->gather, "words", (int)(p->field[i].bytes / 4));
-        launch_bind_buffer(p->gather, "index", index);
-        launch_bind_buffer(p->gather, "from", &p->field[i].now);
-        launch_bind_buffer(p->gather, "to", &p->field[i].spare);
+        launch_set_count(p->gather, "n", n);
+        launch_set_count(p->gather, "words", p->field[i].bytes / 4);
+        launch_bind_all(
+            p->gather, (const struct launch_binding[]){{"index", index}, {"from", &p->field[i].now},
+                           {"to", &p->field[i].spare}, {0}});
         launch_run(p->gather, n);
     }
 }

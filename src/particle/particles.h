@@ -16,7 +16,6 @@ enum { FIELD_STATE, FIELD_GID, FIELD_ORIENTATION, FIELD_N };
 /* One carried field: `bytes` per element (0: the scene does not have it), in two buffers that
  * change places when elements are reordered. */
 struct field {
-    const char *name;
     size_t bytes;
     struct buffer now, spare;
 };

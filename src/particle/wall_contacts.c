@@ -40,50 +40,45 @@ static void upload_walls(struct wall_contacts *w, const struct scene *scene)
             bounds[6 * i + 3 + a] = fmin(walls->high[3 * i + a], 1e30);
         }
     for (size_t i = 0; i < n_wall; i++) material[i] = scene->wall[i].material;
-    buffer_reserve(&w->primitive, 12 * n * preal);
-    buffer_reserve(&w->bounds, 6 * n * preal);
-    buffer_reserve(&w->triangle_features, 6 * n * sizeof(cl_int));
-    buffer_reserve(&w->wall_of, n * sizeof(cl_int));
-    buffer_reserve(&w->material, n_wall * sizeof(cl_int));
     buffer_reserve(&w->room, n_wall * preal);
     buffer_reserve(&w->pose, n_wall * POSE_WIDTH * preal);
     buffer_reserve(&w->batch, WALL_BATCH * n_wall * POSE_WIDTH * preal);
-    reals_write(&w->primitive, is_float, 0, 12 * n, walls->primitive);
-    reals_write(&w->bounds, is_float, 0, 6 * n, bounds);
-    buffer_write(&w->triangle_features, 0, 6 * n * sizeof(cl_int), walls->features);
-    buffer_write(&w->wall_of, 0, n * sizeof(cl_int), walls->wall_of);
-    buffer_write(&w->material, 0, n_wall * sizeof(cl_int), material);
+    reals_put(&w->primitive, is_float, 12 * n, walls->primitive);
+    reals_put(&w->bounds, is_float, 6 * n, bounds);
+    buffer_put(&w->triangle_features, 6 * n * sizeof(cl_int), walls->features);
+    buffer_put(&w->wall_of, n * sizeof(cl_int), walls->wall_of);
+    buffer_put(&w->material, n_wall * sizeof(cl_int), material);
     free(bounds);
     free(material);
 }
 
-struct wall_contacts *wall_contacts_create(struct device *dev, const struct comm *comm,
-    const struct features *features, const struct scene *scene, const struct walls *walls,
-    double dt, const struct program *lists, const struct program *force)
+struct wall_contacts *wall_contacts_create(const struct wall_setup *setup)
 {
     struct wall_contacts *w = fail_alloc(sizeof *w);
-    w->features = features;
-    w->walls = walls;
-    w->comm = comm;
-    w->dt = dt;
-    w->layout = contact_layout(dev, force);
+    struct device *dev = setup->lists->dev;
+    size_t n_wall = (size_t)setup->walls->n_wall;
+    w->features = setup->features;
+    w->walls = setup->walls;
+    w->comm = setup->comm;
+    w->dt = setup->dt;
+    w->layout = contact_layout(dev, setup->force);
     buffers_create(dev, w, own_buffers);
     buffers_create(dev, &w->now, list_buffers);
     buffers_create(dev, &w->old, list_buffers);
     contact_arrivals_init(dev, &w->arrivals, "arrived wall contacts");
-    upload_walls(w, scene);
-    w->poses = fail_alloc(WALL_BATCH * (size_t)walls->n_wall * sizeof *w->poses);
-    w->built = fail_alloc((size_t)walls->n_wall * sizeof *w->built);
-    w->room_host = fail_alloc((size_t)walls->n_wall * sizeof *w->room_host);
+    upload_walls(w, setup->scene);
+    w->poses = fail_alloc(WALL_BATCH * n_wall * sizeof *w->poses);
+    w->built = fail_alloc(n_wall * sizeof *w->built);
+    w->room_host = fail_alloc(n_wall * sizeof *w->room_host);
     w->batch_first = INT64_MIN / 2;
-    w->rows = launch_create(lists, "wall_rows");
-    w->carry = launch_create(lists, "wall_carry");
-    w->leave = launch_create(lists, "wall_leave");
-    w->copy = launch_create(lists, "pose_copy");
-    w->keep_launch = features->triangle ? launch_create(force, "wall_keep") : NULL;
+    w->rows = launch_create(setup->lists, "wall_rows");
+    w->carry = launch_create(setup->lists, "wall_carry");
+    w->leave = launch_create(setup->lists, "wall_leave");
+    w->copy = launch_create(setup->lists, "pose_copy");
+    w->keep_launch = w->features->triangle ? launch_create(setup->force, "wall_keep") : NULL;
     launch_bind_buffer(w->copy, "batch", &w->batch);
     launch_bind_buffer(w->copy, "pose", &w->pose);
-    launch_set_int(w->copy, "n", walls->n_wall * POSE_WIDTH);
+    launch_set_int(w->copy, "n", w->walls->n_wall * POSE_WIDTH);
     return w;
 }
 
@@ -136,7 +131,7 @@ void wall_contacts_set_step(struct wall_contacts *w, int64_t step)
     if (first || step >= w->batch_first + WALL_BATCH)
         new_batch(w, step, first || w->features->moving);
     if (!first && !w->features->moving) return;
-    launch_set_int(w->copy, "first", (int)(step - w->batch_first) * w->walls->n_wall * POSE_WIDTH);
+    launch_set_count(w->copy, "first", (step - w->batch_first) * w->walls->n_wall * POSE_WIDTH);
     launch_run(w->copy, (int64_t)w->walls->n_wall * POSE_WIDTH);
 }
 
@@ -148,8 +143,7 @@ const struct wall_pose *wall_contacts_pose(const struct wall_contacts *w, int64_
 
 /* Walls in motion get room for horizon_steps at their present speed; what is not there yet is
  * listed when it appears; what is gone is left out. */
-static void set_room(struct wall_contacts *w, int64_t step, int horizon_steps, const double low[3],
-    const double high[3])
+static void set_room(struct wall_contacts *w, int64_t step, int horizon_steps, const double box[6])
 {
     const struct wall_pose *now = wall_contacts_pose(w, step);
     int64_t later = step - w->batch_first + 1;
@@ -160,10 +154,10 @@ static void set_room(struct wall_contacts *w, int64_t step, int horizon_steps, c
         w->room_host[k] = now[k].active ? 0 : -1;
         if (now[k].active && w->walls->moves[k]) {
             double per_step = later < WALL_BATCH
-                                  ? walls_displacement(w->walls, k, &now[k], &next[k], low, high)
+                                  ? walls_displacement(w->walls, k, &now[k], &next[k], box, box + 3)
                                   : 0;
             double speed = walls_displacement(w->walls, k, &now[k],
-                &w->poses[(WALL_BATCH - 1) * (size_t)w->walls->n_wall + (size_t)k], low, high);
+                &w->poses[(WALL_BATCH - 1) * (size_t)w->walls->n_wall + (size_t)k], box, box + 3);
             double left = (double)(WALL_BATCH - (step - w->batch_first));
             w->room_host[k] = horizon_steps * fmax(per_step, speed / fmax(left, 1));
         }
@@ -193,25 +187,21 @@ static void reserve_contacts(struct wall_contacts *w)
 }
 
 void wall_contacts_build(struct wall_contacts *w, struct scan *scan, const struct particles *p,
-    int64_t step, int horizon_steps, const double low[3], const double high[3])
+    int64_t step, int horizon_steps, const double box[6])
 {
     struct wall_list older = w->old, *l = &w->now;
     w->old = w->now;
     w->now = older;
     l->n_owned = p->n_owned;
-    set_room(w, step, horizon_steps, low, high);
+    set_room(w, step, horizon_steps, box);
     buffer_reserve(&l->begin, ((size_t)l->n_owned + 1) * sizeof(cl_int));
-    launch_set_int(w->rows, "n_owned", (int)l->n_owned);
+    launch_set_count(w->rows, "n_owned", l->n_owned);
     launch_set_int(w->rows, "n_primitive", w->walls->n_primitive);
-    const struct {
-        const char *name;
-        const struct buffer *buffer;
-    } bind[] = {{"position", &p->field[FIELD_STATE].now}, {"reach", &p->reach},
-        {"primitive", &w->primitive}, {"bounds", &w->bounds}, {"wall_of", &w->wall_of},
-        {"pose", &w->pose}, {"room", &w->room}, {"begin", &l->begin}, {"candidate", &l->candidate},
-        {"candidate_element", &l->element}};
-    for (size_t i = 0; i < sizeof bind / sizeof *bind; i++)
-        launch_bind_buffer(w->rows, bind[i].name, bind[i].buffer);
+    launch_bind_all(w->rows,
+        (const struct launch_binding[]){{"position", &p->field[FIELD_STATE].now},
+            {"reach", &p->reach}, {"primitive", &w->primitive}, {"bounds", &w->bounds},
+            {"wall_of", &w->wall_of}, {"pose", &w->pose}, {"room", &w->room}, {"begin", &l->begin},
+            {"candidate", &l->candidate}, {"candidate_element", &l->element}, {0}});
     launch_set_int(w->rows, "fill", 0);
     launch_run(w->rows, l->n_owned);
     l->n = scan_total(scan, &l->begin, l->n_owned);
@@ -226,35 +216,30 @@ void wall_contacts_carry(struct wall_contacts *w, const struct buffer *old_index
     struct wall_list *l = &w->now, *o = &w->old;
     struct launch *k = w->carry;
     if (!w->layout.remembers) return;
-    launch_set_int(k, "n_owned", (int)l->n_owned);
-    launch_set_int(k, "n_old", (int)o->n_owned);
+    launch_set_count(k, "n_owned", l->n_owned);
+    launch_set_count(k, "n_old", o->n_owned);
     launch_set_int(k, "width", w->layout.history);
-    launch_set_int(k, "capacity", (int)l->capacity);
-    launch_set_int(k, "old_capacity", (int)o->capacity);
-    launch_set_int(k, "arrival_capacity", (int)w->arrivals.n_contact);
-    const struct {
-        const char *name;
-        const struct buffer *buffer;
-    } bind[] = {{"begin", &l->begin}, {"candidate", &l->candidate}, {"old_index", old_index},
-        {"old_begin", &o->begin}, {"old_candidate", &o->candidate},
-        {"arrival_begin", &w->arrivals.begin}, {"arrival_candidate", &w->arrivals.key},
-        {"arrival_state", &w->arrivals.state}, {"arrival_history", &w->arrivals.history},
-        {"old_state", &o->state}, {"old_history", &o->history}, {"state", &l->state},
-        {"history", &l->history}};
-    for (size_t i = 0; i < sizeof bind / sizeof *bind; i++)
-        launch_bind_buffer(k, bind[i].name, bind[i].buffer);
+    launch_set_count(k, "capacity", l->capacity);
+    launch_set_count(k, "old_capacity", o->capacity);
+    launch_set_count(k, "arrival_capacity", w->arrivals.n_contact);
+    launch_bind_all(
+        k, (const struct launch_binding[]){{"begin", &l->begin}, {"candidate", &l->candidate},
+               {"old_index", old_index}, {"old_begin", &o->begin}, {"old_candidate", &o->candidate},
+               {"arrival_begin", &w->arrivals.begin}, {"arrival_candidate", &w->arrivals.key},
+               {"arrival_state", &w->arrivals.state}, {"arrival_history", &w->arrivals.history},
+               {"old_state", &o->state}, {"old_history", &o->history}, {"state", &l->state},
+               {"history", &l->history}, {0}});
     launch_run(k, l->n_owned);
 }
 
-bool wall_contacts_stale(
-    const struct wall_contacts *w, int64_t step, const double low[3], const double high[3])
+bool wall_contacts_stale(const struct wall_contacts *w, int64_t step, const double box[6])
 {
     if (!w->features->moving && !w->features->timed) return false;
     const struct wall_pose *now = wall_contacts_pose(w, step);
     for (int k = 0; k < w->walls->n_wall; k++) {
         if (now[k].active != (w->room_host[k] >= 0)) return true;
         if (now[k].active && w->walls->moves[k] &&
-            walls_displacement(w->walls, k, &w->built[k], &now[k], low, high) > w->room_host[k])
+            walls_displacement(w->walls, k, &w->built[k], &now[k], box, box + 3) > w->room_host[k])
             return true;
     }
     return false;
@@ -264,18 +249,13 @@ void wall_contacts_select(struct wall_contacts *w, const struct particles *p)
 {
     struct wall_list *l = &w->now;
     struct launch *k = w->keep_launch;
-    launch_set_int(k, "n_owned", (int)l->n_owned);
-    const struct {
-        const char *name;
-        const struct buffer *buffer;
-    } bind[] = {{"position", &p->field[FIELD_STATE].now}, {"begin", &l->begin},
-        {"candidate", &l->candidate}, {"primitive", &w->primitive},
-        {"features", &w->triangle_features}, {"wall_of", &w->wall_of}, {"pose", &w->pose},
-        {"keep", &w->keep}};
-    for (size_t i = 0; i < sizeof bind / sizeof *bind; i++)
-        launch_bind_buffer(k, bind[i].name, bind[i].buffer);
+    launch_set_count(k, "n_owned", l->n_owned);
+    launch_bind_all(k, (const struct launch_binding[]){{"position", &p->field[FIELD_STATE].now},
+                           {"begin", &l->begin}, {"candidate", &l->candidate},
+                           {"primitive", &w->primitive}, {"features", &w->triangle_features},
+                           {"wall_of", &w->wall_of}, {"pose", &w->pose}, {"keep", &w->keep}, {0}});
     launch_bind_buffer_if(k, "state", &l->state);
     launch_bind_buffer_if(k, "history", &l->history);
-    launch_set_int_if(k, "capacity", (int)l->capacity);
+    launch_set_count_if(k, "capacity", l->capacity);
     launch_run(k, l->n_owned);
 }

@@ -38,9 +38,16 @@ struct wall_contacts {
     struct launch *rows, *carry, *leave, *keep_launch, *copy;
 };
 
-struct wall_contacts *wall_contacts_create(struct device *dev, const struct comm *comm,
-    const struct features *features, const struct scene *scene, const struct walls *walls,
-    double dt, const struct program *lists, const struct program *force);
+/* What wall_contacts_create needs, all borrowed as long as the contacts live, except the scene. */
+struct wall_setup {
+    const struct comm *comm;
+    const struct features *features;
+    const struct scene *scene; /* materials of the walls */
+    const struct walls *walls;
+    double dt;                           /* [s] */
+    const struct program *lists, *force; /* wall_lists.cl; wall_keep.cl and layout.cl */
+};
+struct wall_contacts *wall_contacts_create(const struct wall_setup *setup);
 void wall_contacts_free(struct wall_contacts *w);
 
 /* Brings the poses of `step` to the device; from step to step in ascending order. Collective when a
@@ -49,15 +56,14 @@ void wall_contacts_set_step(struct wall_contacts *w, int64_t step);
 const struct wall_pose *wall_contacts_pose(const struct wall_contacts *w, int64_t step);
 
 /* Candidates for `step`, valid until an element or a wall has used up its room; `horizon_steps`:
- * for how long walls in motion get room. */
+ * for how long walls in motion get room; box: low and high corner of all elements [m]. */
 void wall_contacts_build(struct wall_contacts *w, struct scan *scan, const struct particles *p,
-    int64_t step, int horizon_steps, const double low[3], const double high[3]);
+    int64_t step, int horizon_steps, const double box[6]);
 void wall_contacts_carry(struct wall_contacts *w, const struct buffer *old_index);
 
 /* Whether some wall has used up its room by `step`, or appears or goes then. The same on all ranks.
  * Within the batch of the last set_step. */
-bool wall_contacts_stale(
-    const struct wall_contacts *w, int64_t step, const double low[3], const double high[3]);
+bool wall_contacts_stale(const struct wall_contacts *w, int64_t step, const double box[6]);
 
 /* Meshes: which candidates count in this step. */
 void wall_contacts_select(struct wall_contacts *w, const struct particles *p);

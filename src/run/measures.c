@@ -1,8 +1,8 @@
 #include "measures.h"
 
-#include <math.h>
 #include <stdlib.h>
 
+#include "base/whole.h"
 #include "comm/fail.h"
 #include "resume.h"
 
@@ -52,8 +52,7 @@ void measures_free(struct measures *m)
 
 int64_t measures_every(const struct sim *s, int i)
 {
-    int64_t n = llround(s->scene->measure[i].every / s->dt);
-    return n < 1 ? 1 : n;
+    return whole_steps(s->scene->measure[i].every, s->dt);
 }
 
 void measures_write(struct sim *s, struct measures *m)

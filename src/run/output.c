@@ -1,6 +1,5 @@
 #include "output.h"
 
-#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,6 +10,7 @@
 #include "record.h"
 #include "resume.h"
 #include "base/signals.h"
+#include "base/whole.h"
 
 struct outputs {
     struct measures *measures;
@@ -23,9 +23,7 @@ struct outputs {
 
 static int64_t steps_of(const struct sim *s, double every)
 {
-    if (every <= 0) return 0;
-    int64_t n = llround(every / s->dt);
-    return n < 1 ? 1 : n;
+    return every > 0 ? whole_steps(every, s->dt) : 0;
 }
 
 struct outputs *output_create(struct sim *s)

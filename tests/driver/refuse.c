@@ -42,7 +42,9 @@ static void use(const struct comm *comm, struct device *dev, const char *what)
     if (!strcmp(what, "argument")) launch_set_int(launch, "fctor", 1);
     if (!strcmp(what, "size")) launch_set_int(launch, "bias", 1);
     if (!strcmp(what, "value")) launch_bind_buffer(launch, "n", &buffer);
-    launch_set_int(launch, "n", 1);
+    if (!strcmp(what, "count")) launch_set_count(launch, "n", (int64_t)INT32_MAX + 1);
+    if (!strcmp(what, "negative")) launch_set_count(launch, "n", -1);
+    launch_set_count(launch, "n", INT32_MAX);
     launch_bind_buffer(launch, "y", &buffer);
     if (!strcmp(what, "unbound")) launch_check(launch);
     if (!strcmp(what, "run")) launch_run(launch, 1);

@@ -80,15 +80,16 @@ static void by_name(void **state)
         buffer_write(&shift, 0, N * size, single ? (void *)f : (void *)d);
 
         assert_int_equal(launch->n_arg, shifted ? 6 : 5);
-        launch_bind_buffer(launch, "x", &x);
+        launch_bind_all(launch, (const struct launch_binding[]){{"x", &x}, {0}});
         launch_bind(launch, "y", y.mem);
         assert_int_equal(launch_has(launch, "shift"), shifted);
-        assert_int_equal(launch_bind_buffer_if(launch, "shift", &shift), shifted);
+        launch_bind_all_if(
+            launch, (const struct launch_binding[]){{"no_such", &x}, {"shift", &shift}, {0}});
         assert_false(launch_set_int_if(launch, "no_such", 1));
         assert_false(launch_set_real_if(launch, "no_such", 1));
         launch_set_real(launch, "factor", 0.5);
         launch_set_long(launch, "bias", 1000000);
-        launch_set_int(launch, "n", N);
+        launch_set_count(launch, "n", N);
         launch_check(launch);
         launch_run(launch, N);
         buffer_read(&y, 0, N * size, single ? (void *)f : (void *)d);

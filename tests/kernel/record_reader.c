@@ -77,7 +77,7 @@ void reader_read(struct reader *r, struct buffer *pair_result, int n_pair,
     launch_bind_buffer(r->gather, "result", pair_result ? pair_result : &r->buffer[NOTHING]);
     launch_bind_buffer_if(
         r->gather, "wall_result", wall_result ? wall_result : &r->buffer[NOTHING]);
-    launch_set_int(r->gather, "n_owned", (int)n);
+    launch_set_count(r->gather, "n_owned", n);
     launch_run(r->gather, (int64_t)n);
     for (int which = 0; which < 2; which++) {
         buffer_read(&r->buffer[which ? TORQUE : FORCE], 0, 4 * n * sizeof *vector, vector);

@@ -92,7 +92,7 @@ static void run_order(struct state *s)
     launch_bind_buffer(place, "pair_j", &l->pair_j);
     fixture_bind(lists.dev, place, &s->buffer[3], "place", (size_t)s->n * sizeof(int), NULL);
     launch_run(place, s->n);
-    launch_set_int(link, "n_incidence", (int)l->n_incidence);
+    launch_set_count(link, "n_incidence", l->n_incidence);
     launch_set_int(link, "n", s->n);
     launch_set_int(link, "first", s->first);
     launch_bind_buffer(link, "place", &s->buffer[3]);

@@ -105,20 +105,18 @@ static void migrate(const struct crowd *c, const int *place, struct buffer *old_
     struct owners_contacts contacts;
     struct buffer leaving;
     int index[N_LEAVE], *from = fail_alloc((size_t)c->n_all * sizeof *from), n = N_LEAVE;
-    size_t real_bytes = sizeof(real);
     for (int k = 0; k < N_LEAVE; k++) index[k] = k;
     for (int e = 0; e < c->n_all; e++) from[e] = -1;
     for (int e = 0; e < N; e++)
         if (place[e] >= 0) from[place[e]] = e < N_LEAVE ? N + e : e;
     fixture_buffer(lists.dev, &leaving, "leaving", sizeof index, index);
-    owners_pick_contacts(&contacts, lists.scan, &leaving, N_LEAVE, lists.pairs, NULL, real_bytes);
+    owners_pick_pairs(&contacts, lists.scan, &leaving, N_LEAVE, lists.pairs);
     for (int e = 0; e < c->n_owned; e++)
         if (from[e] < 0) from[e] = N + n++;
     contacts.begin = fail_realloc(contacts.begin, ((size_t)n + 1) * sizeof *contacts.begin);
     /* new ones have none */
     for (int k = N_LEAVE + 1; k <= n; k++) contacts.begin[k] = contacts.begin[N_LEAVE];
-    owners_store_contacts(&lists.pairs->arrivals, &contacts, n, sizeof(int64_t),
-        lists.pairs->layout.history, real_bytes);
+    owners_store_pairs(lists.pairs, &contacts, n);
     fixture_buffer(lists.dev, old_index, "old_index", (size_t)c->n_all * sizeof *from, from);
     buffer_free(&leaving);
     free(contacts.begin);
@@ -201,7 +199,7 @@ static void leaving_contacts(void **unused)
     lists_build(&lists, &c);
     write_histories(&c);
     fixture_buffer(lists.dev, &leaving, "leaving", sizeof index, index);
-    owners_pick_contacts(&contacts, lists.scan, &leaving, 100, lists.pairs, NULL, sizeof(real));
+    owners_pick_pairs(&contacts, lists.scan, &leaving, 100, lists.pairs);
     for (int k = 0; k < 100; k++) {
         int n = 0;
         for (int b = 0; b < c.n_all; b++)

@@ -141,9 +141,7 @@ static void to_device(struct test *t)
         launch_set_int(both[k], "n_owned", N);
         launch_set_real_if(both[k], "radius", radius);
         launch_set_real_if(both[k], "inverse_m", inverse_m);
-        launch_set_real(both[k], "gravity_x", gravity[0]);
-        launch_set_real(both[k], "gravity_y", gravity[1]);
-        launch_set_real(both[k], "gravity_z", gravity[2]);
+        launch_set_vector(both[k], "gravity", gravity);
         launch_set_real(both[k], "dt", dt);
         launch_set_real(both[k], "half_dt", 0.5 * dt);
         launch_set_real(both[k], "margin_dt", margin);

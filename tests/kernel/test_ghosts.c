@@ -67,14 +67,11 @@ static int grow_owned(struct tree *t, int n_leaf, struct leaf_box *leaf)
 
 static void set_box(struct launch *k, const double low[3], const double high[3])
 {
-    static const char *const name[2][3] = {{"low_x", "low_y", "low_z"},
-        {"high_x", "high_y", "high_z"}},
-                             *const axis[] = {"period_x", "period_y", "period_z"};
-    for (int a = 0; a < 3; a++) {
-        launch_set_real(k, name[0][a], low[a]);
-        launch_set_real(k, name[1][a], high[a]);
-        launch_set_real_if(k, axis[a], tree_periodic[a] ? LISTS_PERIOD : 0);
-    }
+    double period[3];
+    for (int a = 0; a < 3; a++) period[a] = tree_periodic[a] ? LISTS_PERIOD : 0;
+    launch_set_vector(k, "low", low);
+    launch_set_vector(k, "high", high);
+    launch_set_vector_if(k, "period", period);
 }
 
 /* All that a neighbour may need, whose elements are in the box and in its leaves, and none that is

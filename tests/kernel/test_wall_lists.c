@@ -117,7 +117,7 @@ static struct crowd make(void)
 
 static void build(const struct crowd *c)
 {
-    static const double low[3] = {-1, -1, -1}, high[3] = {6, 6, 2};
+    static const double box[6] = {-1, -1, -1, 6, 6, 2};
     struct particles *p = lists.particles;
     p->n_owned = c->n_owned;
     p->n_ghost = 0;
@@ -125,7 +125,7 @@ static void build(const struct crowd *c)
     buffer_write(&p->field[FIELD_STATE].now, 0, (size_t)c->n_all * sizeof *c->element, c->element);
     buffer_write(&p->reach, 0, (size_t)c->n_all * sizeof *c->reach, c->reach);
     wall_contacts_set_step(contacts, STEP_NOW);
-    wall_contacts_build(contacts, lists.scan, p, STEP_NOW, 2, low, high);
+    wall_contacts_build(contacts, lists.scan, p, STEP_NOW, 2, box);
 }
 
 /* What the device has: candidates of element e are begin[e] <= k < begin[e + 1]. */
@@ -323,9 +323,8 @@ static void histories_follow_their_contacts(void **unused)
     for (int k = 0; k < LEAVE; k++) leave[k] = k;
     fixture_buffer(lists.dev, &index, "index", sizeof leave, leave);
     fixture_buffer(lists.dev, &old_index, "old index", sizeof old, old);
-    owners_pick_contacts(&leaving, lists.scan, &index, LEAVE, NULL, contacts, sizeof(real));
-    owners_store_contacts(&contacts->arrivals, &leaving, LEAVE, sizeof(cl_int),
-        contacts->layout.history, sizeof(real));
+    owners_pick_walls(&leaving, lists.scan, &index, LEAVE, contacts);
+    owners_store_walls(contacts, &leaving, LEAVE);
     build(&moved);
     wall_contacts_carry(contacts, &old_index);
     struct found f = read_found();
@@ -363,8 +362,13 @@ int main(int argc, char **argv)
     make_walls();
     lists_open(&lists);
     force = fixture_program(lists.dev, &lists.features, FEATURES_WALL, sources);
-    contacts = wall_contacts_create(
-        lists.dev, comm, &lists.features, &scene, walls, dt, lists.program, force);
+    contacts = wall_contacts_create(&(struct wall_setup){.comm = comm,
+        .features = &lists.features,
+        .scene = &scene,
+        .walls = walls,
+        .dt = dt,
+        .lists = lists.program,
+        .force = force});
     assert_int_equal(contacts->layout.history, HISTORY_WIDTH);
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     wall_contacts_free(contacts);
