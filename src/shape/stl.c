@@ -1,171 +1,12 @@
-/* Reading goes in two passes: file -> list of corners (triangle soup), then soup -> welded mesh.
- * Binary files are told from ASCII by their size, since many binary ones begin with `solid` too. */
+/* Corners of triangles (stl_file.h) become a welded mesh. */
 #include "stl.h"
 
 #include "comm/fail.h"
+#include "stl_file.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdint.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
-#include <strings.h>
-
-enum { HEADER = 84, RECORD = 50 }; /* bytes: 80 of text and a count; 12 floats and a short */
-
-/* Corners as they come: [n][3][3]. */
-struct soup {
-    double *corner;
-    size_t n, room;
-};
-
-static double *soup_add(struct soup *soup)
-{
-    if (soup->n == soup->room) {
-        soup->room = soup->room ? 2 * soup->room : 256;
-        soup->corner = fail_realloc(soup->corner, soup->room * 9 * sizeof(double));
-    }
-    return soup->corner + 9 * soup->n++;
-}
-
-static unsigned char *read_whole(const char *path, size_t *size, char **error)
-{
-    FILE *file = fopen(path, "rb");
-    if (!file) {
-        *error = fail_format("%s: %s", path, strerror(errno));
-        return NULL;
-    }
-    unsigned char *data = NULL;
-    size_t room = 1 << 16, got;
-    *size = 0;
-    errno = 0;
-    do {
-        room *= 2;
-        data = fail_realloc(data, room + 1);
-        got = fread(data + *size, 1, room - *size, file);
-        *size += got;
-    } while (*size == room);
-    data[*size] = 0;
-    if (ferror(file)) {
-        *error = fail_format("%s: %s", path, strerror(errno ? errno : EIO));
-        free(data);
-        data = NULL;
-    }
-    fclose(file);
-    return data;
-}
-
-/* Little-endian by the format, whatever the host is. */
-static uint32_t u32_at(const unsigned char *p)
-{
-    return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
-}
-
-static char *read_binary(const char *path, const unsigned char *data, struct soup *soup)
-{
-    uint32_t n = u32_at(data + 80);
-    for (uint32_t t = 0; t < n; t++) {
-        /* behind the normal */
-        const unsigned char *record = data + HEADER + (size_t)t * RECORD + 12;
-        double *corner = soup_add(soup);
-        for (int k = 0; k < 9; k++) {
-            uint32_t bits = u32_at(record + 4 * k);
-            float value;
-            memcpy(&value, &bits, sizeof value);
-            if (!isfinite(value))
-                return fail_format("%s: triangle %u: corner %d is not finite", path, t, k / 3 + 1);
-            corner[k] = (double)value;
-        }
-    }
-    return NULL;
-}
-
-/* Next word in [*at, *at + *length), counting lines; false at the end. */
-static bool next_word(const char **at, size_t *length, int *line)
-{
-    const char *p = *at + *length;
-    for (; *p && strchr(" \t\r\n", *p); p++)
-        if (*p == '\n') ++*line;
-    *at = p;
-    *length = strcspn(p, " \t\r\n");
-    return *length > 0;
-}
-
-static bool is_word(const char *at, size_t length, const char *word)
-{
-    return strlen(word) == length && strncasecmp(at, word, length) == 0;
-}
-
-/* Only corners count: `vertex x y z`, three to each `endloop`. Stored normals may be wrong and are
- * not read. */
-static char *read_ascii(const char *path, const char *text, struct soup *soup)
-{
-    const char *at = text;
-    size_t length = 0;
-    int line = 1, n_corner = 0;
-    bool ended = false;
-    double corner[9];
-    while (next_word(&at, &length, &line)) {
-        if (is_word(at, length, "vertex")) {
-            if (n_corner == 3)
-                return fail_format("%s:%d: more than three corners in a triangle", path, line);
-            for (int k = 0; k < 3; k++) {
-                if (!next_word(&at, &length, &line))
-                    return fail_format("%s:%d: the file ends within a triangle", path, line);
-                char *end;
-                double value = strtod(at, &end);
-                if (end != at + length || !isfinite(value))
-                    return fail_format(
-                        "%s:%d: '%.*s' is not a finite number", path, line, (int)length, at);
-                corner[3 * n_corner + k] = value;
-            }
-            n_corner++;
-        } else if (is_word(at, length, "endloop")) {
-            if (n_corner != 3)
-                return fail_format(
-                    "%s:%d: a triangle has %d of its 3 corners", path, line, n_corner);
-            memcpy(soup_add(soup), corner, sizeof corner);
-            n_corner = 0;
-        } else if (is_word(at, length, "endsolid") || is_word(at, length, "solid")) {
-            ended = is_word(at, length, "endsolid");
-            length += strcspn(at + length, "\n"); /* a name may hold any word */
-        } else if (is_word(at, length, "facet")) {
-            length += strcspn(at + length, "\n");
-        } else if (!is_word(at, length, "outer") && !is_word(at, length, "loop") &&
-                   !is_word(at, length, "endfacet")) {
-            return fail_format("%s:%d: '%.*s' is not a keyword of STL", path, line,
-                (int)(length < 40 ? length : 40), at);
-        }
-    }
-    return n_corner || !ended ? fail_format("%s:%d: the file is cut off: no 'endsolid'", path, line)
-                              : NULL;
-}
-
-/* Whether it holds nothing but text where a binary file has its count: of another format, or with
- * something before `solid`. */
-static bool is_text(const unsigned char *data, size_t size)
-{
-    for (size_t k = 0; k < size && k < HEADER; k++)
-        if (data[k] < 0x20 && !strchr("\t\r\n", data[k])) return false;
-    return strnlen((const char *)data, HEADER) == (size < HEADER ? size : HEADER);
-}
-
-static char *read_soup(const char *path, const unsigned char *data, size_t size, struct soup *soup)
-{
-    if (size >= HEADER && size == HEADER + (size_t)u32_at(data + 80) * RECORD)
-        return read_binary(path, data, soup);
-    if (size >= 5 && strncasecmp((const char *)data, "solid", 5) == 0 &&
-        strlen((const char *)data) == size)
-        return read_ascii(path, (const char *)data, soup);
-    if (size > 0 && is_text(data, size) && strncasecmp((const char *)data, "solid", 5) != 0)
-        return fail_format("%s: not an STL file: text that does not begin with 'solid'", path);
-    if (size < HEADER)
-        return fail_format("%s: neither ASCII nor binary STL: %zu bytes", path, size);
-    size_t needed = HEADER + (size_t)u32_at(data + 80) * RECORD;
-    return fail_format("%s: %s: %u triangles need %zu bytes, the file has %zu", path,
-        size < needed ? "cut off" : "not an STL file", u32_at(data + 80), needed, size);
-}
 
 /* Vertices in cells of a hash table: two corners within `near` of each other in each coordinate are
  * one. */
@@ -229,7 +70,7 @@ static bool is_flat(const struct stl *stl, const int v[3], double near)
     return twice_area < near * longest;
 }
 
-static void weld_soup(struct stl *stl, const struct soup *soup)
+static void weld_soup(struct stl *stl, const struct stl_soup *soup)
 {
     double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL},
            extent = 0, far = 1e-30;
@@ -301,12 +142,8 @@ static void number_edges(struct stl *stl)
 
 struct stl *stl_read(const char *path, double scale, char **error)
 {
-    struct soup soup = {0};
-    size_t size;
-    unsigned char *data = read_whole(path, &size, error);
-    if (!data) return NULL;
-    *error = read_soup(path, data, size, &soup);
-    free(data);
+    struct stl_soup soup = {0};
+    *error = stl_file_read(path, &soup);
     if (!*error && soup.n == 0) *error = fail_format("%s: no triangle", path);
     if (!*error && soup.n > INT32_MAX / 9)
         *error = fail_format("%s: %zu triangles are more than one surface can hold", path, soup.n);
