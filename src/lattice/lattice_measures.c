@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "comm/fail.h"
+#include "run/energy_watch.h"
 #include "run/measures.h"
 #include "scene/measure_columns.h"
 
@@ -123,9 +124,18 @@ static void measure_broken(struct sim *s, int m, const struct view *view, double
     for (int mode = 0; mode < LATTICE_BREAK_MODES; mode++) value[mode] = (double)count[mode];
 }
 
+static void check_energy(struct sim *s, const struct lattice_energy *now)
+{
+    const struct lattice_energy *start = &s->lattice->energy_start;
+    double in = start->kinetic + start->rotational + start->elastic + fabs(now->work) +
+                fabs(now->gravity - start->gravity);
+    energy_watch(s, lattice_energy_balance(start, now), in, 1e-9 * fabs(now->gravity));
+}
+
 static void measure_energy(struct sim *s, int m, const struct view *view, double *value)
 {
     (void)m;
+    check_energy(s, &view->energy);
     energy_terms_columns(lattice_energy_table, &s->lattice->energy_start, &view->energy, value);
 }
 

@@ -298,7 +298,8 @@ class Lattice(parallel_runs.Case):
                     self.assertEqual(run.series(), alone)
 
     def test_refused(self):
-        """A step over the limit ends the run with exit code 5 at once."""
+        """A step over the limit ends the run with exit code 5 at once; where it is allowed, as
+        soon as the energy runs away or a number is none. No file holds NaN."""
         over = plate(1, step=1e-5)
         run = self.run_scene(self.put(over), 2)
         self.assertEqual(run.code, 5)
@@ -308,6 +309,13 @@ class Lattice(parallel_runs.Case):
         self.assertEqual(run.code, 5, run.err)
         self.assertIn("are not numbers", run.err)
         self.assertIn("of the critical one", run.err)
+        over["measure"] = [{"name": "energy", "every": 2e-5, "energy": "all"}]
+        for ranks in (1, 3):
+            run = self.run_scene(self.put(over), ranks, "--steps", "2000")
+            self.assertEqual(run.code, 5, run.err)
+            self.assertRegex(run.err, r"step \d+, t = \S+ s: the energy runs away: its balance")
+            self.assertNotIn("nan", run.series()["energy.csv"])
+            self.assertEqual(run.record()["exit"], 5)
 
 
 if __name__ == "__main__":
