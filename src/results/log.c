@@ -1,5 +1,6 @@
 #include "log.h"
 #include "comm/fail.h"
+#include "base/files.h"
 #include "base/timer.h"
 
 #include <errno.h>
@@ -70,12 +71,23 @@ static void to_file(struct log *log, const char *text)
     log->early = longer;
 }
 
+bool log_is_ours(const char *dir)
+{
+    char *path = fail_format("%s/log.txt", dir);
+    bool same = files_begins(path, LOG_FIRST_LINE);
+    free(path);
+    return same;
+}
+
 void log_attach(struct log *log, const char *dir, bool append)
 {
     if (!log->speaks) return;
     log->path = fail_format("%s/log.txt", dir);
-    log->file = fopen(log->path, append ? "ae" : "we");
-    if (!log->file) fail_stop(EXIT_IO, "cannot create '%s': %s", log->path, strerror(errno));
+    char error[FILES_ERROR_SIZE];
+    int fd = append ? files_append(log->path, error) : files_create(log->path, error);
+    if (fd < 0) fail_stop(EXIT_IO, "%s", error);
+    log->file = fdopen(fd, "a");
+    if (!log->file) fail_stop(EXIT_IO, "cannot open '%s': %s", log->path, strerror(errno));
     if (log->early) to_file(log, log->early);
     free(log->early);
     log->early = NULL;

@@ -24,11 +24,8 @@ static int64_t *frames_of(const char *dir, int64_t *n)
     int64_t *index = NULL;
     *n = folder ? 0 : -errno;
     for (struct dirent *entry; folder && (entry = readdir(folder));) {
-        long long number;
-        int length = 0;
-        if (sscanf(entry->d_name, "frame_%lld.hdf%n", &number, &length) != 1 || length == 0 ||
-            entry->d_name[length] || number < 0)
-            continue;
+        int64_t number = snapshot_index(entry->d_name);
+        if (number < 0) continue;
         index = fail_realloc(index, (size_t)(*n + 1) * sizeof *index);
         index[(*n)++] = number;
     }
