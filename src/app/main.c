@@ -7,6 +7,7 @@
 #include "lattice/lattice_method.h"
 #include "options.h"
 #include "particle/particle.h"
+#include "results/snapshot.h"
 #include "run/resume.h"
 #include "scene/scene_report.h"
 #include "base/signals.h"
@@ -77,6 +78,7 @@ static int print(const struct comm *comm, const struct options *options)
 
 int main(int argc, char **argv)
 {
+    snapshot_serve(argc, argv);
     signals_hold(); /* from the threads of MPI and OpenCL */
     struct comm *comm = comm_create(&argc, &argv);
     struct options options = options_parse(argc, argv);

@@ -58,8 +58,13 @@ char *snapshot_path(const char *dir, int64_t index);
 int64_t snapshot_index(const char *name);
 
 /* Compares the frame's version and number of datasets, reads every dataset, each rank its share,
- * and compares its checksum. Returns NULL if the frame is whole, else what is wrong with it, in
+ * and compares its checksum: in a child process, the program itself, which survives what HDF5 does
+ * with a damaged file. Returns NULL if the frame is whole, else what is wrong with it, in
  * fresh memory owned by the caller, the same on every rank. Collective; `comm` NULL: alone. */
 char *snapshot_check(const struct comm *comm, const char *path);
+
+/* Every program that calls snapshot_check calls this first in main, before MPI: it serves as that
+ * child, and then does not return. */
+void snapshot_serve(int argc, char **argv);
 
 #endif

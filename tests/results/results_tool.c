@@ -103,6 +103,7 @@ static void record(const struct comm *comm, const char *dir, const char *limited
 
 int main(int argc, char **argv)
 {
+    snapshot_serve(argc, argv);
     if (argc > 2 && !strcmp(argv[1], "check")) {
         char *wrong = snapshot_check(NULL, argv[2]);
         if (wrong) printf("%s\n", wrong);

@@ -249,6 +249,7 @@ static void test_pieces(void **state)
 
 int main(int argc, char **argv)
 {
+    snapshot_serve(argc, argv);
     comm = comm_create(&argc, &argv);
     if (comm->rank == 0) {
         strcpy(dir, "/tmp/democles_frame_XXXXXX");
