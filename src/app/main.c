@@ -10,6 +10,7 @@
 #include "results/snapshot.h"
 #include "run/resume.h"
 #include "scene/scene_report.h"
+#include "base/files.h"
 #include "base/signals.h"
 #include "version.h"
 
@@ -91,7 +92,9 @@ int main(int argc, char **argv)
         code = print(comm, &options);
     else code = runs ? run(comm, &options) : check(comm, &options);
 
-    int32_t is_lost = fflush(stdout) || ferror(stdout);
+    /* Whoever asked for no more (`democles explain | head -1`) has got what was wanted; what a run
+     * says is in its log.txt. */
+    int32_t is_lost = (fflush(stdout) || ferror(stdout)) && !files_reader_is_gone();
     comm_or_i32(comm, &is_lost, 1);
     if (is_lost) fail_stop_together(EXIT_IO, "cannot write to the standard output");
     options_free(&options);

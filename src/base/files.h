@@ -15,6 +15,10 @@ char *files_read(const char *path, size_t *n, char error[FILES_ERROR_SIZE]);
 /* Whether an ordinary file, not a link, is there and begins with `text`. */
 bool files_begins(const char *path, const char *text);
 
+/* Whether nobody reads any more what is written to the standard output: a pipe whose other end is
+ * closed, as by `| head -1`, or a terminal that has gone. */
+bool files_reader_is_gone(void);
+
 /* A name beside `path` for what is not whole yet, PATH.PID.tmp: no two runs, and no user, have the
  * same. In fresh memory owned by the caller. */
 char *files_tmp(const char *path);

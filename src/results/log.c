@@ -19,6 +19,7 @@ static const double every_terminal = 0.2, every_file = 30.0;
 struct log {
     bool speaks, quiet; /* speaks: rank 0 */
     bool is_terminal;
+    bool is_alone;      /* nobody reads the standard output any more */
     FILE *file;         /* log.txt, NULL before log_attach */
     char *path, *early; /* early: text before log_attach */
     int line_width;     /* of the progress line now on the terminal; 0: none */
@@ -122,6 +123,14 @@ static char *text_of(const char *format, va_list args)
     return text;
 }
 
+/* A run does not end because `tee` or an ssh session did. */
+static void look_for_reader(struct log *log)
+{
+    if (!ferror(stdout) || log->is_alone || !files_reader_is_gone()) return;
+    log->is_alone = true;
+    log_warn(log, "the standard output is closed; the run goes on, and log.txt has all it says");
+}
+
 void log_print(struct log *log, const char *format, ...)
 {
     if (!log->speaks) return;
@@ -137,6 +146,7 @@ void log_print(struct log *log, const char *format, ...)
     to_file(log, line);
     free(line);
     free(text);
+    if (!log->quiet) look_for_reader(log);
 }
 
 void log_warn(struct log *log, const char *format, ...)

@@ -1,8 +1,11 @@
 #!/usr/bin/python3
 """Files of results: how many there are, whose they are, and what becomes of a user's own."""
 import glob
+import json
 import os
 import shutil
+import signal
+import subprocess
 
 import cli
 
@@ -199,6 +202,69 @@ class Owned(Files):
         self.good("run", "s.yaml", "-o", "d")
         self.assertEqual(os.readlink(os.path.join(self.dir, "d", "scene.yaml")), "../s.yaml")
         self.assertEqual(self.text("s.yaml"), SCENE)
+
+
+class Piped(Files):
+    """Standard output whose reader goes away."""
+
+    def pipe(self, *args, lines=0):
+        """Runs with a reader that takes so many lines and then closes the pipe."""
+        process = subprocess.Popen(
+            [cli.DEMOCLES, *args],
+            cwd=self.dir,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            # as a shell has it, not as Python has it
+            preexec_fn=lambda: signal.signal(signal.SIGPIPE, signal.SIG_DFL),
+        )
+        for _ in range(lines):
+            process.stdout.readline()
+        process.stdout.close()
+        err = process.stderr.read()
+        process.stderr.close()
+        return process.wait(60), err
+
+    def test_run_goes_on(self):
+        self.good("run", "s.yaml", "-o", "whole")
+        for lines in (0, 1):
+            code, err = self.pipe("run", "s.yaml", "-o", "d", "--force", lines=lines)
+            self.assertEqual((code, err.count("\n")), (0, 1), err)
+            self.assertIn("warning: the standard output is closed; the run goes on", err)
+            self.assertEqual(self.names("d"), self.names("whole"))
+            record, whole = json.loads(self.text("d/run.json")), json.loads(
+                self.text("whole/run.json")
+            )
+            self.assertEqual((record["exit"], record["digest"]), (0, whole["digest"]))
+            log = self.text("d/log.txt").splitlines()
+            self.assertEqual(len(log), len(self.text("whole/log.txt").splitlines()) + 1)
+            self.assertIn("step 100 of 100", "\n".join(log))
+
+    def test_resume_goes_on(self):
+        self.good("run", "s.yaml", "-o", "d", "--steps", "50")
+        code, err = self.pipe("resume", "d")
+        self.assertEqual((code, err.count("\n")), (0, 1), err)
+        self.assertEqual(json.loads(self.text("d/run.json"))["steps"], 100)
+
+    def test_what_prints_is_quiet(self):
+        for args in (
+            ["check", "s.yaml"],
+            ["check", "s.yaml", "--resolved"],
+            ["explain"],
+            ["devices"],
+            ["--help"],
+            ["--version"],
+        ):
+            for lines in (0, 1):
+                self.assertEqual(self.pipe(*args, lines=lines), (0, ""), args)
+
+    def test_full(self):
+        """A disk that is full is another matter: what was asked for is not there."""
+        with open("/dev/full", "w") as full:
+            run = self.call("check", "s.yaml", stdout=full)
+        self.assertEqual(run.code, 6)
+        self.assertIn("cannot write to the standard output", run.err[0])
 
 
 if __name__ == "__main__":
