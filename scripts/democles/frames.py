@@ -1,5 +1,11 @@
 """What the tools and checks share: frames of a run as arrays with units, and the resolved scene as numbers."""
+import contextlib
+import functools
+import os
 import pathlib
+import resource
+import signal
+import sys
 
 import h5py
 import numpy
@@ -21,6 +27,68 @@ def number(value):
     return float("inf") if value in ("never", "none") else float(value)
 
 
+# What h5py raises where a file is not what it seems.
+NOT_A_FRAME = (
+    OSError,
+    KeyError,
+    ValueError,
+    TypeError,
+    RuntimeError,
+    IndexError,
+    AttributeError,
+    MemoryError,
+)
+
+
+def _look_at_all(path):
+    """Every object and attribute; rows too where they are in pieces."""
+
+    def look(name, item):
+        dict(item.attrs)
+        if isinstance(item, h5py.Dataset) and item.chunks:
+            item[()]
+
+    with h5py.File(path, "r") as file:
+        file.visititems(look)
+
+
+@functools.lru_cache(maxsize=None)
+def _survives(path, changed):
+    """Whether HDF5 reads the file to its end, tried in a child process, since HDF5 1.10 crashes on some
+    damaged files; changed: when, so that a file is looked at once. Returns the signal that ended it, or 0.
+    """
+    sys.stdout.flush()
+    sys.stderr.flush()
+    child = os.fork()
+    if child == 0:
+        code = 1
+        try:
+            resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+            resource.setrlimit(
+                resource.RLIMIT_CPU, (60, 60)
+            )  # a loop in HDF5; looking takes milliseconds
+            os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+            _look_at_all(path)
+            code = 0
+        finally:
+            os._exit(code)
+    status = os.waitpid(child, 0)[1]
+    return os.WTERMSIG(status) if os.WIFSIGNALED(status) else 0
+
+
+@contextlib.contextmanager
+def _opened(path):
+    """The file of a frame; what is wrong with it ends the tool with a message."""
+    try:
+        number = _survives(str(path), os.stat(path).st_mtime_ns)
+        if number:
+            raise OSError(f"damaged, HDF5 fails on it ({signal.Signals(number).name})")
+        with h5py.File(path, "r") as file:
+            yield file
+    except NOT_A_FRAME as error:
+        raise SystemExit(f"{path}: not a frame: {error}") from error
+
+
 HEXAHEDRON = 12  # VTK's number
 
 
@@ -31,24 +99,28 @@ class Frame:
 
     def __init__(self, path):
         self.path = str(path)
-        try:
-            with h5py.File(self.path, "r") as file:
-                shown = file["VTKHDF"]
-                self.points, self.time = shown["Points"][()], float(shown["FieldData/TimeValue"][0])
-                self._field, types = _arrays(shown["PointData"]), shown["Types"][:1]
-                self.corners = None
-                if types == [HEXAHEDRON]:
-                    self.corners, self.displacement = self.points.reshape(-1, 8, 3), self._field[
-                        "displacement"
-                    ].reshape(-1, 8, 3)
-                    self.points = (self.corners + self.displacement).mean(axis=1)
-                    self._field = {
-                        "displacement": self.displacement.mean(axis=1),
-                        **_arrays(shown["CellData"]),
-                    }
-        except (OSError, KeyError) as error:
-            raise SystemExit(f"{self.path}: not a frame: {error}") from error
+        with _opened(self.path) as file:
+            shown = file["VTKHDF"]
+            self.points, self.time = shown["Points"][()], float(shown["FieldData/TimeValue"][0])
+            self._field, types = _arrays(shown["PointData"]), shown["Types"][:1]
+            self._check(self.points.ndim == 2 and self.points.shape[1] == 3, "Points")
+            self.corners = None
+            if types == [HEXAHEDRON]:
+                self.corners, self.displacement = self.points.reshape(-1, 8, 3), self._field[
+                    "displacement"
+                ].reshape(-1, 8, 3)
+                self.points = (self.corners + self.displacement).mean(axis=1)
+                self._field = {
+                    "displacement": self.displacement.mean(axis=1),
+                    **_arrays(shown["CellData"]),
+                }
+            for name, values in self._field.items():
+                self._check(len(values) == len(self.points), name)
         self.names = list(self._field)
+
+    def _check(self, is_good, name):
+        if not is_good:
+            raise ValueError(f"{name} does not have the shape that frames have")
 
     def field(self, name):
         """[n] or [n][width]; a field that is not drawn but part of the state is found too."""
@@ -66,7 +138,7 @@ class Frame:
             if self.corners is None or name == "displacement"
             else "VTKHDF/CellData/"
         )
-        with h5py.File(self.path, "r") as file:
+        with _opened(self.path) as file:
             unit = (
                 file[(shown if name in self._field else f"democles/{self._table()}/") + name]
                 .attrs.get("unit", b"")
@@ -88,12 +160,12 @@ def _arrays(group):
 
 def state(path, name):
     """A dataset of the state, as `elements/force`; None where there is none."""
-    with h5py.File(path, "r") as file:
+    with _opened(path) as file:
         dataset = file.get("democles/" + name)
         return None if dataset is None else dataset[()]
 
 
 def attribute(path, name):
     """A whole number that belongs to the state, as `step`."""
-    with h5py.File(path, "r") as file:
+    with _opened(path) as file:
         return int(file["democles"].attrs[name])

@@ -7,8 +7,10 @@
 #include "lattice/lattice_method.h"
 #include "options.h"
 #include "particle/particle.h"
+#include "results/snapshot.h"
 #include "run/resume.h"
 #include "scene/scene_report.h"
+#include "base/files.h"
 #include "base/signals.h"
 #include "version.h"
 
@@ -17,6 +19,7 @@ static int run(struct comm *comm, struct options *options)
 {
     struct log *log = log_create(comm, options->run.quiet);
     bool goes_on = options->command == OPTIONS_RESUME;
+    log_print(log, LOG_FIRST_LINE "%s (%s)", DEMOCLES_VERSION, DEMOCLES_GIT);
     struct resume *from = goes_on ? resume_open(comm, log, options->operand) : NULL;
     struct scene *scene =
         goes_on ? resume_scene(comm, from, options->set, options->n_set)
@@ -76,6 +79,7 @@ static int print(const struct comm *comm, const struct options *options)
 
 int main(int argc, char **argv)
 {
+    snapshot_serve(argc, argv);
     signals_hold(); /* from the threads of MPI and OpenCL */
     struct comm *comm = comm_create(&argc, &argv);
     struct options options = options_parse(argc, argv);
@@ -88,7 +92,9 @@ int main(int argc, char **argv)
         code = print(comm, &options);
     else code = runs ? run(comm, &options) : check(comm, &options);
 
-    int32_t is_lost = fflush(stdout) || ferror(stdout);
+    /* Whoever asked for no more (`democles explain | head -1`) has got what was wanted; what a run
+     * says is in its log.txt. */
+    int32_t is_lost = (fflush(stdout) || ferror(stdout)) && !files_reader_is_gone();
     comm_or_i32(comm, &is_lost, 1);
     if (is_lost) fail_stop_together(EXIT_IO, "cannot write to the standard output");
     options_free(&options);

@@ -1,11 +1,14 @@
 #include "files.h"
 #include "comm/fail.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static bool failed(char error[FILES_ERROR_SIZE], const char *what, const char *path)
@@ -38,6 +41,67 @@ char *files_read(const char *path, size_t *n, char error[FILES_ERROR_SIZE])
     }
     fclose(file);
     return text;
+}
+
+bool files_begins(const char *path, const char *text)
+{
+    size_t n = strlen(text);
+    char *found = fail_alloc(n + 1);
+    struct stat status;
+    int fd = open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    bool same = fd >= 0 && fstat(fd, &status) == 0 && S_ISREG(status.st_mode) &&
+                read(fd, found, n) == (ssize_t)n && !memcmp(found, text, n);
+    if (fd >= 0) close(fd);
+    free(found);
+    return same;
+}
+
+bool files_reader_is_gone(void)
+{
+    struct pollfd out = {.fd = STDOUT_FILENO, .events = POLLOUT};
+    return poll(&out, 1, 0) > 0 && (out.revents & (POLLERR | POLLHUP));
+}
+
+char *files_tmp(const char *path)
+{
+    return fail_format("%s.%ld.tmp", path, (long)getpid());
+}
+
+char *files_tmp_of(const char *name)
+{
+    size_t n = strlen(name);
+    if (n < 4 || strcmp(name + n - 4, ".tmp") != 0) return NULL;
+    size_t end = n -= 4;
+    while (n > 0 && isdigit((unsigned char)name[n - 1])) n--;
+    if (n == end || n < 2 || name[n - 1] != '.') return NULL;
+    return fail_format("%.*s", (int)(n - 1), name);
+}
+
+int files_create(const char *path, char error[FILES_ERROR_SIZE])
+{
+    int fd = open(path, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    if (fd < 0) failed(error, "create", path);
+    return fd;
+}
+
+int files_append(const char *path, char error[FILES_ERROR_SIZE])
+{
+    /* O_NONBLOCK: the open of a pipe would wait for its other end */
+    int fd = open(path, O_RDWR | O_APPEND | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
+    struct stat status;
+    if (fd < 0) {
+        if (errno == ELOOP)
+            snprintf(error, FILES_ERROR_SIZE,
+                "cannot write '%s': it is a symbolic link, and links out of the folder of results "
+                "are not followed",
+                path);
+        else failed(error, "open", path);
+        return -1;
+    }
+    if (fstat(fd, &status) == 0 && S_ISREG(status.st_mode)) return fd;
+    snprintf(error, FILES_ERROR_SIZE, "cannot write '%s': it is no ordinary file", path);
+    close(fd);
+    return -1;
 }
 
 /* A rename is safe against a power cut only once the folder itself is on disk. */
@@ -80,9 +144,9 @@ static bool write_all(int fd, const char *data, size_t n)
 
 bool files_replace(const char *path, const void *data, size_t n, char error[FILES_ERROR_SIZE])
 {
-    char *tmp = fail_format("%s.tmp", path);
-    int fd = open(tmp, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    bool ok = fd >= 0 || failed(error, "create", tmp);
+    char *tmp = files_tmp(path);
+    int fd = files_create(tmp, error);
+    bool ok = fd >= 0;
     if (ok && (!write_all(fd, data, n) || fsync(fd))) ok = failed(error, "write", tmp);
     if (fd >= 0 && close(fd) && ok) ok = failed(error, "write", tmp);
     if (ok) ok = files_commit(tmp, path, error);

@@ -11,7 +11,27 @@ enum { FILES_ERROR_SIZE = 512 };
 /* The whole file, NUL-terminated (not counted in `n`), in fresh memory owned by the caller; NULL
  * and `error` on failure. */
 char *files_read(const char *path, size_t *n, char error[FILES_ERROR_SIZE]);
-/* Writes PATH.tmp, syncs, renames. On failure nothing is left over; returns false and `error`. */
+
+/* Whether an ordinary file, not a link, is there and begins with `text`. */
+bool files_begins(const char *path, const char *text);
+
+/* Whether nobody reads any more what is written to the standard output: a pipe whose other end is
+ * closed, as by `| head -1`, or a terminal that has gone. */
+bool files_reader_is_gone(void);
+
+/* A name beside `path` for what is not whole yet, PATH.PID.tmp: no two runs, and no user, have the
+ * same. In fresh memory owned by the caller. */
+char *files_tmp(const char *path);
+/* The PATH of such a name, in fresh memory owned by the caller; NULL: it is not of that form. */
+char *files_tmp_of(const char *name);
+/* Opens a file that this call makes: whatever has the name already, be it a link to nowhere, is an
+ * error. Returns the descriptor, or -1 and `error`. */
+int files_create(const char *path, char error[FILES_ERROR_SIZE]);
+/* Opens a file for reading and for writing at its end, and makes it where there is none. A link is
+ * not followed, and what is no file is not opened. Returns the descriptor, or -1 and `error`. */
+int files_append(const char *path, char error[FILES_ERROR_SIZE]);
+/* Writes PATH.PID.tmp, syncs, renames: a link at `path` is replaced, not followed. On failure
+ * nothing is left over; returns false and `error`. */
 bool files_replace(const char *path, const void *data, size_t n, char error[FILES_ERROR_SIZE]);
 /* The last steps of that: rename `tmp` (written and synced) to `path`, sync the folder. Removes
  * `tmp` on failure. */

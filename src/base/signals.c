@@ -35,6 +35,7 @@ static void mask_term(int how)
 
 void signals_hold(void)
 {
+    signal(SIGPIPE, SIG_IGN);
     mask_term(SIG_BLOCK);
 }
 

@@ -17,7 +17,9 @@ void signals_keep(void);
 /* The last of the three signals that has come in since signals_install, or 0. */
 int signals_seen(void);
 
-/* SIGTERM waits from here on until signals_pass, and threads that begin in between never take it:
+/* At the start. A pipe that closes is an error of write from here on and kills nobody: SIGPIPE is
+ * ignored.
+ * SIGTERM waits from here on until signals_pass, and threads that begin in between never take it:
  * METIS has a handler of its own while it works, which only the thread that called it survives
  * (partition/graph.c). */
 void signals_hold(void);

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/files.h"
 #include "comm/fail.h"
 #include "kernel_cache.h"
 
@@ -14,7 +15,9 @@ static char *dump(const struct program *program, const char *source)
     const char *folder = program->dev->dump_dir ? program->dev->dump_dir : getenv("TMPDIR");
     char *path = fail_format(
         "%s/%s_%d.cl", folder && folder[0] ? folder : "/tmp", program->name, (int)getpid());
-    FILE *file = fopen(path, "w");
+    char error[FILES_ERROR_SIZE];
+    int fd = files_create(path, error);
+    FILE *file = fd >= 0 ? fdopen(fd, "w") : NULL;
     bool good = file && fprintf(file, "/* %s */\n%s", program->options, source) > 0;
     if (file && fclose(file) != 0) good = false;
     if (good) return path;

@@ -136,8 +136,8 @@ void lattice_fields_read(const struct sim *s, struct frame_table *table)
 {
     for (int k = 0; k < N_ROW; k++)
         if (is_state(s, &field_row[k]))
-            frame_table_add(table, s->comm, s->from->reader, field_row[k].name, field_row[k].type,
-                field_row[k].width);
+            frame_table_add(
+                table, s->from->reader, field_row[k].name, field_row[k].type, field_row[k].width);
 }
 
 struct lattice_state lattice_fields_rows(const struct sim *s, const struct frame_table *table)

@@ -1,5 +1,6 @@
 #include "lattice_restore.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -106,12 +107,11 @@ static int64_t place_of(const struct lattice_layout *c, int64_t gid)
 }
 
 /* Rows into ascending id, as layout->gid has them. */
-static void sort_rows(struct frame_table *t, const struct lattice_layout *c, const char *path)
+static void sort_rows(struct frame_table *t, const struct lattice_layout *c)
 {
     const int64_t *id = frame_table_get(t, "id");
     int64_t *to = fail_alloc((size_t)t->n * sizeof *to);
     for (int64_t i = 0; i < t->n; i++) to[i] = place_of(c, id[i]);
-    if (t->n != c->n_owned) fail_stop(EXIT_IO, "'%s' does not have every cell", path);
     for (int k = 0; k < t->n_column; k++) {
         size_t bytes = (size_t)t->column[k].width * column_type_size(t->column[k].type);
         char *sorted = fail_alloc((size_t)t->n * bytes);
@@ -135,11 +135,39 @@ static void write_motion(struct sim *s, const struct lattice_state *t)
     free(theta);
 }
 
+/* Links and fates of a cell that its body can have. */
+static bool may_break_so(int32_t bits, int32_t links, int32_t fate)
+{
+    bool good = !(links & ~(bits & CELL_LINKS)) && fate >> 9 == 0;
+    for (int axis = 0; axis < 3; axis++) good &= FATE_MODE(fate, axis) <= LATTICE_BREAK_MODES;
+    return good;
+}
+
+/* Indices and numbers of the table may be used. */
+static void check_cells(struct sim *s, const struct frame_table *table)
+{
+    frame_table_check_range(table, s->comm, "id", 0, s->n_first - 1);
+    frame_table_check_unique(table, s->comm, "id", s->n_first);
+    frame_table_check_finite(table, s->comm);
+    struct lattice_state t = lattice_fields_rows(s, table);
+    int64_t wrong = -1;
+    for (int64_t i = table->n - 1; i >= 0 && t.links; i--)
+        if (!may_break_so(s->lattice->cells->bits[t.gid[i]], t.links[i], t.fate[i])) wrong = i;
+    frame_table_check_row(table, s->comm, "links", wrong, "are links that the cell does not have");
+    for (int64_t i = table->n - 1; i >= 0 && t.fresh; i--)
+        if (t.fresh[i] & ~(s->lattice->cells->bits[t.gid[i]] & CELL_LINKS)) wrong = i;
+    frame_table_check_row(table, s->comm, "fresh", wrong, "are links that the cell does not have");
+    if (table->n_total != s->n_first)
+        fail_stop_together(
+            EXIT_IO, "'%s' cannot be used: it does not have every cell", table->path);
+}
+
 void lattice_restore_cells(struct sim *s)
 {
     struct lattice *l = s->lattice->lattice;
     struct frame_table table = frame_table_begin(s->comm, s->from->reader, "cells", "id");
     lattice_fields_read(s, &table);
+    check_cells(s, &table);
     int32_t *owner = frame_table_owners(s->comm, l->layout->gid, l->layout->n_owned, s->n_first),
             *to = fail_alloc((size_t)table.n * sizeof *to);
     const int64_t *id = lattice_fields_rows(s, &table).gid;
@@ -147,7 +175,7 @@ void lattice_restore_cells(struct sim *s)
     frame_table_send(&table, s->comm, to, 1);
     free(to);
     free(owner);
-    sort_rows(&table, l->layout, s->from->path);
+    sort_rows(&table, l->layout);
     struct lattice_state t = lattice_fields_rows(s, &table);
     write_motion(s, &t);
     if (l->breakage) lattice_break_write(l->breakage, t.links, t.fate);
@@ -157,10 +185,23 @@ void lattice_restore_cells(struct sim *s)
     frame_table_free(&table);
 }
 
+/* What steers the way to rest: the step of the next look, and the damping. */
+static void check_totals(const struct sim *s, const struct totals *t)
+{
+    const double from_zero[] = {t->rest_next, t->rest_damping, t->relax[0]}; /* the last: alpha */
+    bool good = t->rest_next <= SCENE_STEPS_MOST;
+    for (int k = 0; k < 3; k++) good &= from_zero[k] >= 0 && isfinite(from_zero[k]);
+    if (!good)
+        fail_stop_together(EXIT_IO,
+            "'%s' cannot be used: totals/number: what leads to rest is no number from 0 on",
+            s->from->path);
+}
+
 void lattice_restore_run(struct sim *s)
 {
     struct totals t;
     h5_read_rows(s->from->reader, "totals", "number", COLUMN_F64, 1, 0, LATTICE_RESTORE_TOTALS, &t);
+    check_totals(s, &t);
     s->step = s->from->step;
     s->lattice->energy_start = t.start;
     lattice_energy_reopen(s->lattice->account, t.opened);

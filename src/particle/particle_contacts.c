@@ -241,13 +241,15 @@ void particle_contacts_restore(struct sim *s, const int32_t *owner, bool wall)
     struct list l = wall ? walls_of(s) : pairs_of(s);
     struct frame_table t =
         frame_table_begin(s->comm, reader, wall ? "wall_contacts" : "pairs", "id");
-    frame_table_add(&t, s->comm, reader, "id", COLUMN_I64, 1);
-    frame_table_add(&t, s->comm, reader, wall ? "primitive" : "partner", COLUMN_I64, 1);
-    frame_table_add(&t, s->comm, reader, "state", COLUMN_I32, 1);
-    if (l.layout.history > 0)
-        frame_table_add(&t, s->comm, reader, "history", COLUMN_F64, l.layout.history);
+    frame_table_add(&t, reader, "id", COLUMN_I64, 1);
+    frame_table_add(&t, reader, wall ? "primitive" : "partner", COLUMN_I64, 1);
+    frame_table_add(&t, reader, "state", COLUMN_I32, 1);
+    if (l.layout.history > 0) frame_table_add(&t, reader, "history", COLUMN_F64, l.layout.history);
     if (s->particle->features.energy)
-        frame_table_add(&t, s->comm, reader, "ledger", COLUMN_F64, LEDGER_WIDTH);
+        frame_table_add(&t, reader, "ledger", COLUMN_F64, LEDGER_WIDTH);
+    frame_table_check_range(&t, s->comm, "id", 0, s->n_first - 1);
+    if (!wall) frame_table_check_range(&t, s->comm, "partner", 0, s->n_first - 1);
+    frame_table_check_finite(&t, s->comm);
     int64_t n[2] = {t.n, 0};
     send(s, &t, owner, wall);
     n[1] = fill(s, &l, &t, wall);

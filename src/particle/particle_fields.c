@@ -250,8 +250,8 @@ void particle_fields_read(struct sim *s, struct frame_table *table)
 {
     for (int k = 0; k < N_ROW; k++)
         if (is_state(s, &field_row[k]))
-            frame_table_add(table, s->comm, s->from->reader, field_row[k].name,
-                type_of(&field_row[k]), field_row[k].width);
+            frame_table_add(table, s->from->reader, field_row[k].name, type_of(&field_row[k]),
+                field_row[k].width);
 }
 
 struct particles_host *particle_fields_host(struct sim *s, const struct frame_table *table)

@@ -18,6 +18,9 @@ static struct frame_table read_elements(struct sim *s)
 {
     struct frame_table t = frame_table_begin(s->comm, s->from->reader, "elements", "id");
     particle_fields_read(s, &t);
+    frame_table_check_range(&t, s->comm, "id", 0, s->n_first - 1);
+    frame_table_check_unique(&t, s->comm, "id", s->n_first);
+    frame_table_check_finite(&t, s->comm);
     return t;
 }
 
@@ -56,7 +59,7 @@ static void place(struct sim *s, const struct frame_table *t)
     particles_replace(p, &run->features, h);
     buffer_reserve(&p->reference, 4 * particles_preal(&run->features) * n);
     particle_fields_restore(s, t, true);
-    int64_t built_at = h5_read_i64(s->from->reader, "built_at");
+    int64_t built_at = resume_integer(s, "built_at", s->from->step);
     s->step = s->from->step;
     if (run->wall_contacts) wall_contacts_set_step(run->wall_contacts, built_at);
     particle_lists(s, built_at);
@@ -103,8 +106,8 @@ static void restore_energy(struct sim *s)
 static void restore_flags(struct sim *s)
 {
     struct particle_run *run = s->particle;
-    cl_int flag[FLAG_N] = {[FLAG_STALE] = (cl_int)h5_read_i64(s->from->reader, "stale"),
-        [FLAG_LOST] = (cl_int)h5_read_i64(s->from->reader, "lost")};
+    cl_int flag[FLAG_N] = {[FLAG_STALE] = (cl_int)resume_integer(s, "stale", INT32_MAX),
+        [FLAG_LOST] = (cl_int)resume_integer(s, "lost", INT32_MAX)};
     buffer_write(&run->particles->flags, 0, sizeof flag, flag);
     if (!watch_due(s->step)) return;
     watch_read(&s->watch, &run->particles->flags);
@@ -115,7 +118,7 @@ void particle_resume(struct sim *s)
 {
     struct particle_run *run = s->particle;
     struct frame_table elements = read_elements(s);
-    run->skin = h5_read_f64(s->from->reader, "skin");
+    run->skin = resume_real(s, "skin");
     run->particles->n_global = elements.n;
     comm_sum_i64(s->comm, &run->particles->n_global, 1);
     spread(s, &elements);

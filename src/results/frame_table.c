@@ -15,10 +15,12 @@ static int64_t share_begin(int64_t n, int rank, int n_rank)
 struct frame_table frame_table_begin(
     const struct comm *comm, const struct h5_reader *reader, const char *name, const char *first)
 {
-    int64_t n = h5_read_size(reader, name, first);
+    int64_t n = h5_read_size(reader, name, first), begin = share_begin(n, comm->rank, comm->n_rank);
     return (struct frame_table){.name = name,
-        .n = share_begin(n, comm->rank + 1, comm->n_rank) -
-             share_begin(n, comm->rank, comm->n_rank)};
+        .path = reader->path,
+        .begin = begin,
+        .n = share_begin(n, comm->rank + 1, comm->n_rank) - begin,
+        .n_total = n};
 }
 
 static size_t bytes_of(const struct frame_column *c)
@@ -26,15 +28,17 @@ static size_t bytes_of(const struct frame_column *c)
     return (size_t)c->width * column_type_size(c->type);
 }
 
-void *frame_table_add(struct frame_table *table, const struct comm *comm,
-    const struct h5_reader *reader, const char *column, enum column_type type, int width)
+void *frame_table_add(struct frame_table *table, const struct h5_reader *reader, const char *column,
+    enum column_type type, int width)
 {
+    int64_t n = h5_read_size(reader, table->name, column);
+    if (n != table->n_total)
+        fail_stop(EXIT_IO, "'%s' cannot be used: %s/%s has %lld rows, other columns %lld",
+            table->path, table->name, column, (long long)n, (long long)table->n_total);
     struct frame_column *c = &table->column[table->n_column++];
     *c = (struct frame_column){column, type, width, NULL};
     c->data = fail_alloc((size_t)table->n * bytes_of(c));
-    int64_t begin =
-        share_begin(h5_read_size(reader, table->name, column), comm->rank, comm->n_rank);
-    h5_read_rows(reader, table->name, column, type, width, begin, table->n, c->data);
+    h5_read_rows(reader, table->name, column, type, width, table->begin, table->n, c->data);
     return c->data;
 }
 

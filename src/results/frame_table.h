@@ -9,8 +9,9 @@
 enum { FRAME_TABLE_COLUMNS = 12 };
 
 struct frame_table {
-    const char *name;
-    int64_t n; /* rows here */
+    const char *name, *path; /* of the frame */
+    int64_t begin, n;        /* rows here, and which is the first, as the frame has them */
+    int64_t n_total;         /* in the frame */
     int n_column;
     struct frame_column {
         const char *name;
@@ -24,11 +25,26 @@ struct frame_table {
  * of its columns. */
 struct frame_table frame_table_begin(
     const struct comm *comm, const struct h5_reader *reader, const char *name, const char *first);
-/* Reads one more column. The returned memory is the table's, until its rows are sent. */
-void *frame_table_add(struct frame_table *table, const struct comm *comm,
-    const struct h5_reader *reader, const char *column, enum column_type type, int width);
+/* Reads one more column, of as many rows. The returned memory is the table's, until its rows are
+ * sent. */
+void *frame_table_add(struct frame_table *table, const struct h5_reader *reader, const char *column,
+    enum column_type type, int width);
 /* A column by name, NULL if it has not been added. */
 void *frame_table_get(const struct frame_table *table, const char *column);
+/* What is read is not trusted before it is checked: an index is in its range, a number is one. The
+ * first row of any rank that is not as it has to be ends the run with EXIT_IO on all of them.
+ * Before rows are sent; collective. */
+void frame_table_check_range(const struct frame_table *table, const struct comm *comm,
+    const char *column, int64_t low, int64_t high);
+/* No number twice; they are 0 to n_global - 1, checked before. */
+void frame_table_check_unique(
+    const struct frame_table *table, const struct comm *comm, const char *column, int64_t n_global);
+/* Every column of real numbers. */
+void frame_table_check_finite(const struct frame_table *table, const struct comm *comm);
+/* row: of this rank's that is wrong, or negative. */
+void frame_table_check_row(const struct frame_table *table, const struct comm *comm,
+    const char *column, int64_t row, const char *what);
+
 /* Sends each row i to the ranks to[i * n_to + k], k < n_to: once to each; negative: to nobody. What
  * arrives, in the order of ranks and rows, takes the table's place. Collective. */
 void frame_table_send(

@@ -77,6 +77,34 @@ static const char *sum_rows(hid_t dataset, hid_t memory, enum column_type type,
     return good ? NULL : "cannot be read";
 }
 
+bool h5_check_number(hid_t at, const char *object, const char *name, hid_t memory, void *value)
+{
+    hid_t attribute = H5Aopen_by_name(at, object, name, H5P_DEFAULT, H5P_DEFAULT);
+    if (attribute < 0) return false;
+    hid_t type = H5Aget_type(attribute), space = H5Aget_space(attribute);
+    bool good =
+        H5Tget_class(type) == H5Tget_class(memory) && H5Tget_size(type) == H5Tget_size(memory) &&
+        H5Sget_simple_extent_type(space) == H5S_SCALAR && H5Aread(attribute, memory, value) >= 0;
+    if (type >= 0) H5Tclose(type);
+    if (space >= 0) H5Sclose(space);
+    H5Aclose(attribute);
+    return good;
+}
+
+/* Rows lie in one piece in this very file, where its headers say; n: their bytes. */
+static bool lies_in_file(hid_t dataset, hsize_t n)
+{
+    hid_t layout = H5Dget_create_plist(dataset), file = H5Iget_file_id(dataset);
+    hsize_t end = 0, stored = H5Dget_storage_size(dataset);
+    haddr_t at = H5Dget_offset(dataset);
+    bool good = H5Pget_layout(layout) == H5D_CONTIGUOUS && H5Pget_external_count(layout) == 0 &&
+                H5Fget_filesize(file, &end) >= 0 && n <= stored &&
+                (n == 0 || (at != HADDR_UNDEF && at <= end && stored <= end - at));
+    if (layout >= 0) H5Pclose(layout);
+    if (file >= 0) H5Fclose(file);
+    return good;
+}
+
 static const char *sum_part(
     hid_t dataset, hid_t stored, hid_t space, int part, int n_part, uint64_t *sum)
 {
@@ -87,14 +115,20 @@ static const char *sum_part(
     hid_t memory;
     enum column_type type = type_of(stored, &memory);
     if (memory < 0) return "its type is not one that democles writes";
+    if (H5Tget_class(stored) == H5T_STRING && (rank != 1 || shape[0] != 1)) {
+        H5Tclose(memory);
+        return "it is not one text";
+    }
     /* A damaged header may claim any size: never ask for more than the file can hold. */
     hsize_t stored_bytes = H5Dget_storage_size(dataset), row = shape[1] * H5Tget_size(memory);
-    const char *wrong =
-        row == 0 || shape[0] > stored_bytes / row ? "it is shorter than its header says" : NULL;
+    const char *wrong = (shape[0] > 0 && row == 0) || (row > 0 && shape[0] > stored_bytes / row) ||
+                                row / H5Tget_size(memory) != shape[1] ||
+                                !lies_in_file(dataset, shape[0] * row)
+                            ? "it is shorter than its header says"
+                            : NULL;
     hsize_t begin = shape[0] * (hsize_t)part / (hsize_t)n_part,
             end = shape[0] * ((hsize_t)part + 1) / (hsize_t)n_part;
-    if (shape[0] == 0) wrong = NULL;
-    else if (!wrong && begin < end) wrong = sum_rows(dataset, memory, type, shape, begin, end, sum);
+    if (!wrong && begin < end) wrong = sum_rows(dataset, memory, type, shape, begin, end, sum);
     H5Tclose(memory);
     return wrong;
 }
@@ -103,10 +137,8 @@ const char *h5_check_part(hid_t dataset, int part, int n_part, uint64_t *sum, ui
 {
     *sum = *expected = 0;
     if (H5Aexists(dataset, "checksum") <= 0) return "it has no checksum";
-    hid_t attribute = H5Aopen(dataset, "checksum", H5P_DEFAULT);
-    herr_t code = attribute < 0 ? -1 : H5Aread(attribute, H5T_NATIVE_UINT64, expected);
-    if (attribute >= 0) H5Aclose(attribute);
-    if (code < 0) return "its checksum cannot be read";
+    if (!h5_check_number(dataset, ".", "checksum", H5T_NATIVE_UINT64, expected))
+        return "its checksum cannot be read";
     hid_t stored = H5Dget_type(dataset), space = H5Dget_space(dataset);
     const char *wrong = stored < 0 || space < 0
                             ? "its header cannot be read"

@@ -6,6 +6,7 @@
 #include "column.h"
 
 #include <hdf5.h>
+#include <stdbool.h>
 
 /* Sum mod 2^64 over numbers of mix(mix(k + G) xor bits): k the flat index from 0 over all ranks,
  * bits as stored and zero extended, mix and G of digest.h. Independent of how the rows are spread
@@ -18,6 +19,10 @@ uint64_t h5_check_sum(enum column_type type, const void *data, int64_t n, int64_
 const char *h5_check_part(hid_t dataset, int part, int n_part, uint64_t *sum, uint64_t *expected);
 /* What is said where they do not add up. */
 extern const char h5_check_wrong[];
+
+/* Reads an attribute of `object` below `at` that is a single number of the kind and size of
+ * `memory`; returns false, and leaves `value`, where it is anything else, however long. */
+bool h5_check_number(hid_t at, const char *object, const char *name, hid_t memory, void *value);
 
 /* HDF5's error stack in short: what was tried, and the innermost reason. Static storage,
  * overwritten by the next call. */

@@ -35,9 +35,9 @@ void h5_close(struct h5_reader *reader)
 static void read_attribute(
     const struct h5_reader *reader, const char *name, hid_t memory, void *value)
 {
-    hid_t attribute = H5Aopen_by_name(reader->file, "democles", name, H5P_DEFAULT, H5P_DEFAULT);
-    if (attribute < 0 || H5Aread(attribute, memory, value) < 0) give_up(reader, "", name);
-    H5Aclose(attribute);
+    if (!h5_check_number(reader->file, "democles", name, memory, value))
+        fail_stop(EXIT_IO, "cannot read '%s': its attribute %s is not one number, or not there",
+            reader->path, name);
 }
 
 int64_t h5_read_i64(const struct h5_reader *reader, const char *attribute)
@@ -59,9 +59,13 @@ char *h5_read_text(const struct h5_reader *reader, const char *name)
     char *path = fail_format("democles/%s", name);
     hid_t dataset = H5Dopen2(reader->file, path, H5P_DEFAULT);
     if (dataset < 0) give_up(reader, "", name);
-    hid_t type = H5Dget_type(dataset);
+    hid_t type = H5Dget_type(dataset), space = H5Dget_space(dataset);
+    if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) ||
+        H5Sget_simple_extent_npoints(space) != 1)
+        fail_stop(EXIT_IO, "cannot read '%s': %s is not one text", reader->path, name);
     char *text = fail_alloc(H5Tget_size(type) + 1);
     if (H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text) < 0) give_up(reader, "", name);
+    H5Sclose(space);
     H5Tclose(type);
     H5Dclose(dataset);
     free(path);
@@ -87,7 +91,9 @@ static hid_t open_column(
     if (dataset < 0) give_up(reader, table, column);
     hid_t space = H5Dget_space(dataset);
     shape[1] = 1;
-    if (H5Sget_simple_extent_dims(space, shape, NULL) < 0) give_up(reader, table, column);
+    int rank = H5Sget_simple_extent_ndims(space);
+    if (rank < 1 || rank > 2 || H5Sget_simple_extent_dims(space, shape, NULL) < 0)
+        give_up(reader, table, column);
     H5Sclose(space);
     free(path);
     return dataset;

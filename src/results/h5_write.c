@@ -59,11 +59,8 @@ static void agree_on_text(const struct h5_writer *writer, char text[FILES_ERROR_
  * half-done collective write. */
 static void reserve(struct h5_writer *writer, int64_t bytes, char error[FILES_ERROR_SIZE])
 {
-    writer->fd = open(writer->tmp, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (writer->fd < 0) {
-        snprintf(error, FILES_ERROR_SIZE, "cannot create '%s': %s", writer->tmp, strerror(errno));
-        return;
-    }
+    writer->fd = files_create(writer->tmp, error);
+    if (writer->fd < 0) return;
     if (bytes <= 0 || fallocate(writer->fd, 0, 0, bytes) == 0) return;
     /* a file system that cannot reserve: the writes will tell */
     if (errno != ENOSPC && errno != EDQUOT && errno != EFBIG) return;
@@ -93,12 +90,23 @@ struct h5_rows h5_rows_of(const struct comm *comm, int64_t mine)
     return rows;
 }
 
+/* Rank 0's name for a file that is not whole yet. */
+static char *name_of_all(const struct comm *comm, const char *path)
+{
+    char *name = comm->rank == 0 ? files_tmp(path) : NULL;
+    size_t n = name ? strlen(name) + 1 : 0;
+    comm_bcast(comm, &n, sizeof n, 0);
+    if (!name) name = fail_alloc(n);
+    comm_bcast(comm, name, n, 0);
+    return name;
+}
+
 struct h5_writer *h5_create(const struct comm *comm, const char *path, int64_t bytes)
 {
     struct h5_writer *writer = fail_alloc(sizeof *writer);
     writer->comm = comm;
     writer->path = fail_strdup(path);
-    writer->tmp = fail_format("%s.tmp", path);
+    writer->tmp = name_of_all(comm, path);
     writer->fd = -1;
     writer->piece = (size_t)1 << 30;
     char error[FILES_ERROR_SIZE] = "";

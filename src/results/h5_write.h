@@ -30,8 +30,8 @@ struct h5_rows {
 };
 struct h5_rows h5_rows_of(const struct comm *comm, int64_t mine);
 
-/* Creates PATH.tmp and reserves `bytes` (an estimate over all ranks) on disk, so that a full disk
- * shows before anything is written. */
+/* Creates PATH.PID.tmp and reserves `bytes` (an estimate over all ranks) on disk, so that a full
+ * disk shows before anything is written. */
 struct h5_writer *h5_create(const struct comm *comm, const char *path, int64_t bytes);
 /* Flush, close, fsync, rename, fsync of the folder; frees the writer. */
 void h5_finish(struct h5_writer *writer);

@@ -1,5 +1,6 @@
 #include "log.h"
 #include "comm/fail.h"
+#include "base/files.h"
 #include "base/timer.h"
 
 #include <errno.h>
@@ -18,6 +19,7 @@ static const double every_terminal = 0.2, every_file = 30.0;
 struct log {
     bool speaks, quiet; /* speaks: rank 0 */
     bool is_terminal;
+    bool is_alone;      /* nobody reads the standard output any more */
     FILE *file;         /* log.txt, NULL before log_attach */
     char *path, *early; /* early: text before log_attach */
     int line_width;     /* of the progress line now on the terminal; 0: none */
@@ -70,12 +72,23 @@ static void to_file(struct log *log, const char *text)
     log->early = longer;
 }
 
+bool log_is_ours(const char *dir)
+{
+    char *path = fail_format("%s/log.txt", dir);
+    bool same = files_begins(path, LOG_FIRST_LINE);
+    free(path);
+    return same;
+}
+
 void log_attach(struct log *log, const char *dir, bool append)
 {
     if (!log->speaks) return;
     log->path = fail_format("%s/log.txt", dir);
-    log->file = fopen(log->path, append ? "ae" : "we");
-    if (!log->file) fail_stop(EXIT_IO, "cannot create '%s': %s", log->path, strerror(errno));
+    char error[FILES_ERROR_SIZE];
+    int fd = append ? files_append(log->path, error) : files_create(log->path, error);
+    if (fd < 0) fail_stop(EXIT_IO, "%s", error);
+    log->file = fdopen(fd, "a");
+    if (!log->file) fail_stop(EXIT_IO, "cannot open '%s': %s", log->path, strerror(errno));
     if (log->early) to_file(log, log->early);
     free(log->early);
     log->early = NULL;
@@ -110,6 +123,14 @@ static char *text_of(const char *format, va_list args)
     return text;
 }
 
+/* A run does not end because `tee` or an ssh session did. */
+static void look_for_reader(struct log *log)
+{
+    if (!ferror(stdout) || log->is_alone || !files_reader_is_gone()) return;
+    log->is_alone = true;
+    log_warn(log, "the standard output is closed; the run goes on, and log.txt has all it says");
+}
+
 void log_print(struct log *log, const char *format, ...)
 {
     if (!log->speaks) return;
@@ -125,6 +146,7 @@ void log_print(struct log *log, const char *format, ...)
     to_file(log, line);
     free(line);
     free(text);
+    if (!log->quiet) look_for_reader(log);
 }
 
 void log_warn(struct log *log, const char *format, ...)

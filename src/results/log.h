@@ -8,10 +8,16 @@
 
 struct log;
 
+/* What the first line of a log begins with: a version follows. */
+#define LOG_FIRST_LINE "democles "
+/* Whether DIR/log.txt is the log of a run, not a link and not somebody else's file. */
+bool log_is_ours(const char *dir);
+
 /* `quiet`: nothing to stdout (log.txt gets everything). Text before log_attach is kept and goes
  * into log.txt too. */
 struct log *log_create(const struct comm *comm, bool quiet);
-/* From now on also to DIR/log.txt; `append` for a continued run. Failure: EXIT_IO. */
+/* From now on also to DIR/log.txt, which is made, or for a continued run (`append`) continued; a
+ * link of that name is not followed. Failure: EXIT_IO. */
 void log_attach(struct log *log, const char *dir, bool append);
 void log_free(struct log *log); /* NULL is fine */
 

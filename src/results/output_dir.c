@@ -1,11 +1,13 @@
 #include "output_dir.h"
 #include "comm/fail.h"
 #include "base/files.h"
+#include "log.h"
+#include "output_names.h"
+#include "series.h"
 
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
-#include <fnmatch.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -66,22 +68,29 @@ static bool lock(const char *dir, struct outcome *outcome)
     return false;
 }
 
-static bool is_result(const char *name)
+static bool exists(const char *dir, const char *name)
 {
-    return !fnmatch("frame_[0-9]*.hdf", name, 0) || !strcmp(name, "run.json");
+    char *path = fail_format("%s/%s", dir, name);
+    struct stat status;
+    bool found = lstat(path, &status) == 0;
+    free(path);
+    return found;
 }
 
-/* Names of files that every run makes, whatever its scene. */
-static bool is_ours(const char *name)
+static bool remove_file(const char *dir, const char *name, struct outcome *outcome)
 {
-    const char *const fixed[] = {"log.txt", "scene.yaml", "resolved.yaml", "run.balance.csv",
-        "trace.json", "stop", "run.json.tmp", "scene.yaml.tmp", "resolved.yaml.tmp",
-        "trace.json.tmp"};
-    if (is_result(name) || !fnmatch("frame_[0-9]*.hdf.tmp", name, 0)) return true;
-    for (size_t k = 0; k < sizeof fixed / sizeof *fixed; k++) {
-        if (!strcmp(name, fixed[k])) return true;
-    }
-    return false;
+    char *path = fail_format("%s/%s", dir, name);
+    bool ok = unlink(path) == 0 || errno == ENOENT || fail_with(outcome, EXIT_IO, "remove", path);
+    free(path);
+    return ok;
+}
+
+/* Somebody else's file with the name of a measure stays. */
+static void remove_old(const char *dir, const char *measure)
+{
+    char *path = fail_format("%s/%s.csv", dir, measure);
+    if (!strchr(measure, '/') && series_is_ours(path)) unlink(path); /* never outside of dir */
+    free(path);
 }
 
 static bool holds_results(const char *dir)
@@ -89,17 +98,9 @@ static bool holds_results(const char *dir)
     DIR *folder = opendir(dir);
     bool found = false;
     for (struct dirent *entry; folder && (entry = readdir(folder));)
-        found |= is_result(entry->d_name);
+        found |= output_names_are_results(entry->d_name);
     if (folder) closedir(folder);
     return found;
-}
-
-static void remove_series(const char *dir, const char *measure)
-{
-    if (strchr(measure, '/')) return; /* never outside of dir */
-    char *path = fail_format("%s/%s.csv", dir, measure);
-    unlink(path);
-    free(path);
 }
 
 static yaml_node_t *value_of(yaml_document_t *document, yaml_node_t *map, const char *key)
@@ -137,28 +138,12 @@ static void remove_old_series(const char *dir)
             yaml_node_t *name =
                 value_of(&document, yaml_document_get_node(&document, *item), "name");
             if (name && name->type == YAML_SCALAR_NODE)
-                remove_series(dir, (const char *)name->data.scalar.value);
+                remove_old(dir, (const char *)name->data.scalar.value);
         }
         yaml_document_delete(&document);
     }
     yaml_parser_delete(&parser);
     free(text);
-}
-
-static bool exists(const char *dir, const char *name)
-{
-    char *path = fail_format("%s/%s", dir, name);
-    bool found = access(path, F_OK) == 0;
-    free(path);
-    return found;
-}
-
-static bool remove_file(const char *dir, const char *name, struct outcome *outcome)
-{
-    char *path = fail_format("%s/%s", dir, name);
-    bool ok = unlink(path) == 0 || fail_with(outcome, EXIT_IO, "remove", path);
-    free(path);
-    return ok;
 }
 
 static bool remove_ours(const char *dir, struct outcome *outcome)
@@ -167,45 +152,70 @@ static bool remove_ours(const char *dir, struct outcome *outcome)
     if (!folder) return fail_with(outcome, EXIT_IO, "read the folder", dir);
     bool ok = true;
     for (struct dirent *entry; (entry = readdir(folder));) {
-        if (is_ours(entry->d_name)) ok = remove_file(dir, entry->d_name, outcome) && ok;
+        if (output_names_are_ours(entry->d_name))
+            ok = remove_file(dir, entry->d_name, outcome) && ok;
     }
     closedir(folder);
     return ok;
 }
 
+/* A text of the user's own that a file of ours would replace. */
+static bool differs(const char *dir, const char *name, const char *text, size_t n)
+{
+    char error[FILES_ERROR_SIZE], *path = fail_format("%s/%s", dir, name);
+    size_t n_there = 0;
+    char *there = files_read(path, &n_there, error);
+    bool other = there ? n_there != n || memcmp(there, text, n) : exists(dir, name);
+    free(there);
+    free(path);
+    return other;
+}
+
+/* What is there already stays: it may be the very scene that is run, or a link to it. */
 static bool put_file(
     const char *dir, const char *name, const char *text, size_t n, struct outcome *outcome)
 {
     char *path = fail_format("%s/%s", dir, name);
-    bool ok = files_replace(path, text, n, outcome->text);
+    bool is_there = exists(dir, name) && !differs(dir, name, text, n),
+         ok = is_there || files_replace(path, text, n, outcome->text);
     if (!ok) outcome->code = EXIT_IO;
     free(path);
     return ok;
 }
 
-/* A scene.yaml of the user's own, other than the scene of this run, that our copy would
- * overwrite. */
-static bool has_other_scene(const char *dir, const char *scene, size_t n_scene)
+/* A CSV of the user's own, perhaps what the scene reads, that a series would replace. */
+static bool is_other_series(const char *dir, const char *name)
 {
-    char error[FILES_ERROR_SIZE], *path = fail_format("%s/scene.yaml", dir);
-    size_t n = 0;
-    char *text = files_read(path, &n, error);
-    bool differs = text && (n != n_scene || memcmp(text, scene, n));
-    free(text);
+    char *file = fail_format("%s.csv", name), *path = fail_format("%s/%s", dir, file);
+    bool other = exists(dir, file) && !series_is_ours(path);
+    free(file);
     free(path);
-    return differs;
+    return other;
 }
 
-/* A CSV of the user's own, perhaps what the scene reads, that a series would overwrite; NULL:
- * none. */
-static const char *other_series(const struct output_request *request)
+/* Whoever touches a file `stop` asks a run to stop; what is longer is a file of its own. */
+static bool is_other_stop(const char *dir)
 {
-    const char *found = NULL;
-    for (int k = 0; k < request->n_measure && !found; k++) {
-        char *name = fail_format("%s.csv", request->measure[k]);
-        if (exists(request->dir, name)) found = request->measure[k];
-        free(name);
-    }
+    char *path = fail_format("%s/stop", dir);
+    struct stat status;
+    bool other = lstat(path, &status) == 0 && (!S_ISREG(status.st_mode) || status.st_size > 1);
+    free(path);
+    return other;
+}
+
+/* Each run writes these anew. */
+static bool is_other(const struct output_request *request, const char *scene, size_t n_scene,
+    char *what, size_t room)
+{
+    const char *dir = request->dir, *resolved = request->resolved, *found = NULL;
+    if (differs(dir, "scene.yaml", scene, n_scene)) found = "another scene.yaml";
+    else if (differs(dir, "resolved.yaml", resolved, strlen(resolved)))
+        found = "another resolved.yaml";
+    else if (exists(dir, "log.txt")) found = "a file log.txt that no run has written";
+    else if (request->trace && exists(dir, "trace.json"))
+        found = "a file trace.json that no run has written";
+    else if (is_other_stop(dir)) found = "a file stop that is not empty and would end the run";
+    snprintf(what, room, "%s", found ? found : "");
     return found;
 }
 
@@ -213,13 +223,33 @@ static const char *other_series(const struct output_request *request)
 static void find_others(const struct output_request *request, const char *scene, size_t n_scene,
     bool is_ours_already, char *what, size_t room)
 {
-    const char *series = other_series(request);
     what[0] = '\0';
-    if (holds_results(request->dir)) snprintf(what, room, "results already");
-    else if (!is_ours_already && has_other_scene(request->dir, scene, n_scene))
-        snprintf(what, room, "another scene.yaml");
-    else if (!is_ours_already && series)
-        snprintf(what, room, "a file %s.csv, the name of a measure", series);
+    if (holds_results(request->dir)) {
+        snprintf(what, room, "results already");
+        return;
+    }
+    if (!is_ours_already && is_other(request, scene, n_scene, what, room)) return;
+    for (int k = 0; k < request->n_measure; k++)
+        if (is_other_series(request->dir, request->measure[k])) {
+            snprintf(what, room, "a file %s.csv, the name of a measure", request->measure[k]);
+            return;
+        }
+    if (is_other_series(request->dir, "run.balance"))
+        snprintf(what, room, "a file run.balance.csv that no run has written");
+}
+
+/* Before this run makes them anew: with --force, or known to be those of a run. */
+static bool remove_replaced(const struct output_request *request, struct outcome *outcome)
+{
+    const char *dir = request->dir;
+    bool ok = remove_file(dir, "log.txt", outcome) && remove_file(dir, "stop", outcome) &&
+              remove_file(dir, "run.balance.csv", outcome);
+    for (int k = 0; k < request->n_measure && ok; k++) {
+        char *name = fail_format("%s.csv", request->measure[k]);
+        ok = remove_file(dir, name, outcome);
+        free(name);
+    }
+    return ok;
 }
 
 static void create(const struct output_request *request, const char *scene, size_t n_scene,
@@ -228,7 +258,7 @@ static void create(const struct output_request *request, const char *scene, size
     const char *dir = request->dir;
     if (!make_folders(dir, outcome) || !lock(dir, outcome)) return;
     /* the latter: a run that was killed before its first frame */
-    bool is_ours_already = holds_results(dir) || exists(dir, "resolved.yaml");
+    bool is_ours_already = holds_results(dir) || log_is_ours(dir);
     char why[300];
     find_others(request, scene, n_scene, is_ours_already, why, sizeof why);
     if (why[0] && !request->force) {
@@ -239,11 +269,9 @@ static void create(const struct output_request *request, const char *scene, size
     }
     if (is_ours_already) {
         remove_old_series(dir);
-        for (int k = 0; k < request->n_measure; k++) remove_series(dir, request->measure[k]);
         if (!remove_ours(dir, outcome)) return;
     }
-    /* else this run would end at once */
-    if (exists(dir, "stop") && !remove_file(dir, "stop", outcome)) return;
+    if (!remove_replaced(request, outcome)) return;
     if (put_file(dir, "scene.yaml", scene, n_scene, outcome))
         put_file(dir, "resolved.yaml", request->resolved, strlen(request->resolved), outcome);
 }
@@ -266,16 +294,6 @@ void output_dir_create(const struct comm *comm, const struct output_request *req
     if (outcome.code) fail_stop_together(outcome.code, "%s", outcome.text);
 }
 
-/* Whether a run that goes on from frame `index` leaves this file behind. */
-static bool is_over(const char *name, int64_t index)
-{
-    long long number;
-    if (!strcmp(name, "run.json") || !strcmp(name, "stop")) return true;
-    if (fnmatch("frame_[0-9]*.hdf", name, 0) && fnmatch("frame_[0-9]*.hdf.tmp", name, 0))
-        return false;
-    return sscanf(name, "frame_%lld", &number) == 1 && number > index;
-}
-
 static void take_up(const struct output_request *request, int64_t index, struct outcome *outcome)
 {
     const char *dir = request->dir;
@@ -287,7 +305,8 @@ static void take_up(const struct output_request *request, int64_t index, struct 
     DIR *folder = opendir(dir);
     bool ok = folder || fail_with(outcome, EXIT_IO, "read the folder", dir);
     for (struct dirent *entry; folder && (entry = readdir(folder));)
-        if (is_over(entry->d_name, index)) ok = remove_file(dir, entry->d_name, outcome) && ok;
+        if (output_names_are_over(entry->d_name, index))
+            ok = remove_file(dir, entry->d_name, outcome) && ok;
     if (folder) closedir(folder);
     if (ok) put_file(dir, "resolved.yaml", request->resolved, strlen(request->resolved), outcome);
 }

@@ -7,7 +7,8 @@
 
 struct output_request {
     const char *dir;
-    bool force;                 /* replace what a run before has left */
+    bool force;                 /* replace what a run before, or somebody else, has left */
+    bool trace;                 /* trace.json will be written */
     const char *scene_path;     /* copied to scene.yaml */
     const char *resolved;       /* text of resolved.yaml */
     const char *const *measure; /* [n_measure] names: the CSV files of this run */
@@ -15,16 +16,17 @@ struct output_request {
 };
 
 /* Makes the folder with its parents, and writes scene.yaml and resolved.yaml into it. Collective:
- * rank 0 acts, all agree; failure: EXIT_IO. Where it holds frames or run.json, or a scene.yaml that
- * is not ours: without `force` all stop with EXIT_USAGE; with it our own files go (frames,
- * run.json, log.txt, the scenes, stop, and the CSV files of the measures that the old resolved.yaml
- * and `measure` name), and nothing else. The folder is locked for the life of the process: where
- * another run still writes into it, all stop with EXIT_USAGE. From here on SIGXFSZ is ignored, so
- * that a file-size limit is an error like a full disk. */
+ * rank 0 acts, all agree; failure: EXIT_IO. Where it holds frames or run.json, or a file that no
+ * run has written and this run would replace (another scene.yaml, a log.txt, the CSV of a measure):
+ * without `force` all stop with EXIT_USAGE; with it those go. From a folder of a run, which is one
+ * with results or with the log of a run, go the files of output_names_are_ours and the series of
+ * the measures that the old resolved.yaml names, and nothing else. The folder is locked for the
+ * life of the process: where another run still writes into it, all stop with EXIT_USAGE. From here
+ * on SIGXFSZ is ignored, so that a file-size limit is an error like a full disk. */
 void output_dir_create(const struct comm *comm, const struct output_request *request);
 
-/* The same for a run that goes on from frame number `index` there: later frames go, and run.json
- * and stop; resolved.yaml is written anew. */
+/* The same for a run that goes on from frame number `index` there: what output_names_are_over says
+ * goes, and resolved.yaml is written anew. */
 void output_dir_resume(
     const struct comm *comm, const struct output_request *request, int64_t index);
 

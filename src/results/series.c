@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 struct series {
@@ -49,6 +50,13 @@ static _Noreturn void stop(const struct series *series, const char *what)
     fail_stop(EXIT_IO, "cannot %s '%s': %s", what, series->path, strerror(errno));
 }
 
+bool series_is_ours(const char *path)
+{
+    struct stat status;
+    return files_begins(path, "time [s]") ||
+           (lstat(path, &status) == 0 && S_ISREG(status.st_mode) && status.st_size == 0);
+}
+
 /* The first line, in fresh memory owned by the caller. */
 static char *header(const struct series_column *column, int n_column)
 {
@@ -66,10 +74,13 @@ static char *header(const struct series_column *column, int n_column)
     return text;
 }
 
-static void open_file(struct series *series, const char *mode)
+static void open_file(struct series *series, bool append)
 {
-    series->file = fopen(series->path, mode);
-    if (!series->file) stop(series, mode[0] == 'w' ? "create" : "open");
+    char error[FILES_ERROR_SIZE];
+    int fd = append ? files_append(series->path, error) : files_create(series->path, error);
+    if (fd < 0) fail_stop(EXIT_IO, "%s", error);
+    series->file = fdopen(fd, "a");
+    if (!series->file) stop(series, "open");
     setvbuf(series->file, NULL, _IOFBF, BUFFER_SIZE);
 }
 
@@ -85,7 +96,6 @@ static struct series *series_of(
 static void begin(struct series *series, const struct series_column *column)
 {
     char *first = header(column, series->n_column);
-    open_file(series, "we");
     fputs(first, series->file);
     free(first);
     series_flush(series);
@@ -95,7 +105,10 @@ struct series *series_create(const struct comm *comm, const char *dir, const cha
     const struct series_column *column, int n_column)
 {
     struct series *series = series_of(comm, dir, name, n_column);
-    if (series->path) begin(series, column);
+    if (series->path) {
+        open_file(series, false);
+        begin(series, column);
+    }
     return series;
 }
 
@@ -128,6 +141,9 @@ void series_check(const struct comm *comm, const char *dir, const char *name,
     if (comm->rank > 0) return;
     char *path = fail_format("%s/%s.csv", dir, name), *first = header(column, n_column),
          *text = contents(path);
+    struct stat status;
+    if (lstat(path, &status) == 0 && !S_ISREG(status.st_mode))
+        fail_stop(EXIT_IO, "'%s' is a link, or no ordinary file; it is not written to", path);
     if (text[0] && strncmp(text, first, strlen(first)))
         fail_stop(EXIT_SCENE, "'%s' has other columns than the measure '%s'", path, name);
     free(text);
@@ -141,10 +157,10 @@ struct series *series_resume(const struct comm *comm, const char *dir, const cha
     struct series *series = series_of(comm, dir, name, n_column);
     if (!series->path) return series;
     char *first = header(column, n_column), *text = contents(series->path);
+    open_file(series, true);
     if (text[0]) {
-        if (truncate(series->path, (off_t)length_until(text, strlen(first), time)))
+        if (ftruncate(fileno(series->file), (off_t)length_until(text, strlen(first), time)))
             stop(series, "shorten");
-        open_file(series, "ae");
     } else {
         fail_warn("'%s' is empty; it is started over", series->path);
         begin(series, column);

@@ -12,6 +12,10 @@ struct series_column {
 
 struct series;
 
+/* Whether a file is the series of some run (or empty, as of one that was killed), not a link and
+ * not somebody else's CSV. */
+bool series_is_ours(const char *path);
+
 /* Creates DIR/NAME.csv with its header. `column` [n_column] without the time; copied. Not
  * collective (rank 0 acts); failure: EXIT_IO. */
 struct series *series_create(const struct comm *comm, const char *dir, const char *name,

@@ -11,6 +11,19 @@ char *snapshot_path(const char *dir, int64_t index)
     return fail_format("%s/frame_%06lld.hdf", dir, (long long)index);
 }
 
+int64_t snapshot_index(const char *name)
+{
+    enum { DIGITS_MOST = 15 }; /* the next numbers are numbers too */
+    long long index;
+    if (strlen(name) > sizeof "frame_.hdf" - 1 + DIGITS_MOST ||
+        sscanf(name, "frame_%lld", &index) != 1 || index < 0)
+        return -1;
+    char *own = fail_format("frame_%06lld.hdf", index);
+    bool same = !strcmp(name, own);
+    free(own);
+    return same ? index : -1;
+}
+
 static int64_t row_bytes(const struct table *table)
 {
     int64_t sum = 0;

@@ -53,10 +53,18 @@ void snapshot_write(const struct comm *comm, const char *dir, const struct frame
 
 /* `DIR/frame_000123.hdf` in fresh memory, owned by the caller. */
 char *snapshot_path(const char *dir, int64_t index);
+/* The number of a frame by its name in DIR, as snapshot_path writes it and in no other way
+ * (frame_7.hdf and frame_000007_kept.hdf are somebody else's); -1: no frame. */
+int64_t snapshot_index(const char *name);
 
 /* Compares the frame's version and number of datasets, reads every dataset, each rank its share,
- * and compares its checksum. Returns NULL if the frame is whole, else what is wrong with it, in
+ * and compares its checksum: in a child process, the program itself, which survives what HDF5 does
+ * with a damaged file. Returns NULL if the frame is whole, else what is wrong with it, in
  * fresh memory owned by the caller, the same on every rank. Collective; `comm` NULL: alone. */
 char *snapshot_check(const struct comm *comm, const char *path);
+
+/* Every program that calls snapshot_check calls this first in main, before MPI: it serves as that
+ * child, and then does not return. */
+void snapshot_serve(int argc, char **argv);
 
 #endif

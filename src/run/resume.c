@@ -2,7 +2,7 @@
 
 #include <dirent.h>
 #include <errno.h>
-#include <stdio.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,11 +24,8 @@ static int64_t *frames_of(const char *dir, int64_t *n)
     int64_t *index = NULL;
     *n = folder ? 0 : -errno;
     for (struct dirent *entry; folder && (entry = readdir(folder));) {
-        long long number;
-        int length = 0;
-        if (sscanf(entry->d_name, "frame_%lld.hdf%n", &number, &length) != 1 || length == 0 ||
-            entry->d_name[length] || number < 0)
-            continue;
+        int64_t number = snapshot_index(entry->d_name);
+        if (number < 0) continue;
         index = fail_realloc(index, (size_t)(*n + 1) * sizeof *index);
         index[(*n)++] = number;
     }
@@ -51,13 +48,72 @@ static int64_t *share_frames(const struct comm *comm, const char *dir, int64_t *
     return index;
 }
 
+/* What every frame notes of the run as a whole. */
+static const struct {
+    const char *name;
+    enum column_type type;
+    size_t at; /* in struct sim, or in its balance */
+    bool is_balance;
+} noted[RESUME_SCALARS] = {{"dt", COLUMN_F64, offsetof(struct sim, dt), false},
+    {"inputs", COLUMN_I64, offsetof(struct sim, inputs), false},
+    {"limit_at", COLUMN_I64, offsetof(struct sim, limit_at), false},
+    {"dt_limit", COLUMN_F64, offsetof(struct sim, dt_limit), false},
+    {"n_removed", COLUMN_I64, offsetof(struct sim, n_removed), false},
+    {"n_rebuild", COLUMN_I64, offsetof(struct sim, n_rebuild), false},
+    {"n_repartition", COLUMN_I64, offsetof(struct balance, n_deal), true},
+    {"n_moved", COLUMN_I64, offsetof(struct balance, n_moved), true}};
+
+static char *wrong_integer(const char *name, int64_t value, int64_t most)
+{
+    return value >= 0 && value <= most
+               ? NULL
+               : fail_format("democles: %s is %lld", name, (long long)value);
+}
+
+static char *wrong_real(const char *name, double value, bool may_be_infinite)
+{
+    return value >= 0 && (may_be_infinite || isfinite(value))
+               ? NULL
+               : fail_format("democles: %s is %g", name, value);
+}
+
+/* What is wrong with the numbers of the frame as a whole, whose checksums are right, or NULL. */
+static char *wrong_numbers(const struct h5_reader *reader)
+{
+    int64_t step = h5_read_i64(reader, "step");
+    char *wrong = wrong_integer("step", step, INT64_MAX / 2);
+    if (!wrong && !(h5_read_f64(reader, "dt") > 0))
+        wrong = fail_strdup("democles: dt is not above 0");
+    for (int k = 0; k < RESUME_SCALARS && !wrong; k++) {
+        const char *name = noted[k].name;
+        if (noted[k].type == COLUMN_F64)
+            wrong = wrong_real(name, h5_read_f64(reader, name), !strcmp(name, "dt_limit"));
+        else if (strcmp(name, "inputs") != 0) /* a checksum, any number */
+            wrong = wrong_integer(
+                name, h5_read_i64(reader, name), !strcmp(name, "limit_at") ? step : INT64_MAX / 2);
+    }
+    return wrong;
+}
+
+/* What is wrong with a frame, or NULL, with its reader. */
+static char *open_frame(const struct comm *comm, const char *path, struct h5_reader **reader)
+{
+    char *wrong = snapshot_check(comm, path);
+    if (wrong) return wrong;
+    *reader = h5_open(path);
+    wrong = wrong_numbers(*reader);
+    if (wrong) h5_close(*reader);
+    return wrong;
+}
+
 struct resume *resume_open(const struct comm *comm, struct log *log, const char *dir)
 {
     int64_t n = 0, k = 0, *index = share_frames(comm, dir, &n);
     char *path = NULL;
+    struct h5_reader *reader = NULL;
     for (; k < n; k++) {
         path = snapshot_path(dir, index[k]);
-        char *wrong = snapshot_check(comm, path);
+        char *wrong = open_frame(comm, path, &reader);
         if (!wrong) break;
         log_warn(log, "'%s' cannot be used: %s%s", path, wrong,
             k + 1 < n ? "; trying the frame before it" : "");
@@ -66,7 +122,7 @@ struct resume *resume_open(const struct comm *comm, struct log *log, const char 
     }
     if (k == n) fail_stop_together(EXIT_SCENE, "no frame in '%s' can be used", dir);
     struct resume *r = fail_alloc(sizeof *r);
-    r->reader = h5_open(path);
+    r->reader = reader;
     r->dir = fail_strdup(dir);
     r->path = path;
     r->index = index[k];
@@ -164,20 +220,6 @@ struct scene *resume_scene(
     return scene;
 }
 
-static const struct {
-    const char *name;
-    enum column_type type;
-    size_t at; /* in struct sim, or in its balance */
-    bool is_balance;
-} noted[RESUME_SCALARS] = {{"dt", COLUMN_F64, offsetof(struct sim, dt), false},
-    {"inputs", COLUMN_I64, offsetof(struct sim, inputs), false},
-    {"limit_at", COLUMN_I64, offsetof(struct sim, limit_at), false},
-    {"dt_limit", COLUMN_F64, offsetof(struct sim, dt_limit), false},
-    {"n_removed", COLUMN_I64, offsetof(struct sim, n_removed), false},
-    {"n_rebuild", COLUMN_I64, offsetof(struct sim, n_rebuild), false},
-    {"n_repartition", COLUMN_I64, offsetof(struct balance, n_deal), true},
-    {"n_moved", COLUMN_I64, offsetof(struct balance, n_moved), true}};
-
 static void *noted_at(const struct sim *s, int k)
 {
     return (char *)(noted[k].is_balance ? (void *)s->balance : (void *)s) + noted[k].at;
@@ -202,6 +244,29 @@ void resume_recall(struct sim *s)
         double real = noted[k].type == COLUMN_F64 ? h5_read_f64(reader, noted[k].name) : 0;
         memcpy(at, noted[k].type == COLUMN_F64 ? (const void *)&real : &integer, sizeof integer);
     }
+}
+
+/* Once a method reads on, there is no way back to the frame before. */
+static void insist(const struct sim *s, char *wrong)
+{
+    if (wrong)
+        fail_stop_together(EXIT_IO,
+            "'%s' cannot be used: %s; without this file the frame before it is taken",
+            s->from->path, wrong);
+}
+
+int64_t resume_integer(const struct sim *s, const char *name, int64_t most)
+{
+    int64_t value = h5_read_i64(s->from->reader, name);
+    insist(s, wrong_integer(name, value, most));
+    return value;
+}
+
+double resume_real(const struct sim *s, const char *name)
+{
+    double value = h5_read_f64(s->from->reader, name);
+    insist(s, wrong_real(name, value, false));
+    return value;
 }
 
 void resume_check_inputs(const struct sim *s)

@@ -38,6 +38,10 @@ void resume_free(struct resume *resume); /* NULL is fine */
 enum { RESUME_SCALARS = 8 };
 void resume_note(const struct sim *s, struct frame_scalar scalar[RESUME_SCALARS]);
 void resume_recall(struct sim *s);
+/* A number of the frame as a whole: an integer from 0 to `most`, a real that is positive or 0, or
+ * all stop with EXIT_IO. Collective. */
+int64_t resume_integer(const struct sim *s, const char *name, int64_t most);
+double resume_real(const struct sim *s, const char *name);
 /* After the plan: what has been made of the scene is what the frame was made of, or all stop with
  * EXIT_SCENE. Collective. */
 void resume_check_inputs(const struct sim *s);

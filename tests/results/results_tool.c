@@ -4,7 +4,7 @@
  *     beyond N bytes on rank 0 (no limit: 0)
  *   check FILE         print what is wrong with a frame, or nothing
  *   folder DIR SCENE [--force]   make the folder of results
- *   record DIR         a run.json, a log and a time series */
+ *   record DIR [NAME]  a run.json, a log and a time series; no byte goes into the file NAME */
 #include <math.h>
 #include <signal.h>
 #include <stdio.h>
@@ -52,12 +52,13 @@ static void write_column(const struct comm *comm, int n, char **arg)
 static void folder(const struct comm *comm, int n, char **arg)
 {
     const char *const measure[] = {"outflow"};
-    struct output_request request = {arg[0], n > 2 && !strcmp(arg[2], "--force"), arg[1],
+    struct output_request request = {arg[0], n > 2 && !strcmp(arg[2], "--force"), false, arg[1],
         "title: resolved\nmeasure: [{name: energy}]\n", measure, 1};
     output_dir_create(comm, &request);
 }
 
-static void record(const struct comm *comm, const char *dir)
+/* limited: the file that no byte can be written to; NULL: none. */
+static void record(const struct comm *comm, const char *dir, const char *limited)
 {
     struct timers timers = {.total = {[TIMER_LOOP] = 1.0 + comm->rank}};
     const double p[3] = {1.0 / 3.0, -0.0, (double)INFINITY};
@@ -81,6 +82,7 @@ static void record(const struct comm *comm, const char *dir)
     report_free(report);
 
     const struct series_column column[] = {{"below", "1"}, {"a, b", "J"}};
+    if (limited && !strcmp(limited, "outflow.csv")) limit_files("0");
     struct series *series = series_create(comm, dir, "outflow", column, 2);
     const double odd[] = {1.0 / 3.0, 5e-324, 1e23, 0.1, -0.0, 1.7976931348623157e308};
     for (int k = 0; k < 6; k++) series_add(series, 1e-3 * k, (const double[]){k, odd[k]});
@@ -88,6 +90,7 @@ static void record(const struct comm *comm, const char *dir)
 
     struct log *log = log_create(comm, false);
     log_print(log, "before the folder");
+    if (limited && !strcmp(limited, "log.txt")) limit_files("0");
     log_attach(log, dir, false);
     log_print(log, "%d elements", 17);
     struct log_progress progress = {0, 1000, 0, 1e-2, 50000};
@@ -100,6 +103,7 @@ static void record(const struct comm *comm, const char *dir)
 
 int main(int argc, char **argv)
 {
+    snapshot_serve(argc, argv);
     if (argc > 2 && !strcmp(argv[1], "check")) {
         char *wrong = snapshot_check(NULL, argv[2]);
         if (wrong) printf("%s\n", wrong);
@@ -112,7 +116,7 @@ int main(int argc, char **argv)
     if (argc > 2 && !strcmp(argv[1], "frame")) frame(comm, n, arg);
     else if (argc > 2 && !strcmp(argv[1], "write")) write_column(comm, n, arg);
     else if (argc > 3 && !strcmp(argv[1], "folder")) folder(comm, n, arg);
-    else if (argc > 2 && !strcmp(argv[1], "record")) record(comm, argv[2]);
+    else if (argc > 2 && !strcmp(argv[1], "record")) record(comm, argv[2], n > 1 ? argv[3] : NULL);
     else fail_stop_together(EXIT_USAGE, "see the head of results_tool.c");
     comm_free(comm);
     return 0;

@@ -182,15 +182,27 @@ class Folders(Folder):
         ours = [
             "frame_000000.hdf",
             "frame_000123.hdf",
-            "frame_000124.hdf.tmp",
+            "frame_000124.hdf.4711.tmp",
+            "frame_1234567.hdf",
             "run.json",
             "log.txt",
             "stop",
             "outflow.csv",
-            "energy.csv",
         ]
         others = [
             "frame.hdf",
+            "frame_7.hdf",
+            "frame_000001_backup.hdf",
+            "frame_000001.old.hdf",
+            "frame_0000001.hdf",
+            "frame_000001.hdf.tmp",
+            "frame_000001.hdf.my.tmp",
+            "frame_1x.hdf.4711.tmp",
+            "frame_-00001.hdf",
+            "frame_+00001.hdf",
+            "frame_ 00001.hdf",
+            "frame_000001.hdf2",
+            "energy.csv",
             "frame_000000.png",
             "notes.txt",
             "analysis.csv",
@@ -198,8 +210,12 @@ class Folders(Folder):
         ]
         for name in ours + others:
             self.put("out/" + name, "old")
+        self.put("out/before.csv", "time [s],count [1]\n0,1\n")
         self.put("out/scene.yaml", "title: old\n")
-        self.put("out/resolved.yaml", "measure:\n  - {name: energy}\n  - {name: ../case/secret}\n")
+        self.put(
+            "out/resolved.yaml",
+            "measure:\n  - {name: energy}\n  - {name: before}\n  - {name: ../case/secret}\n",
+        )
         self.put("case/secret.csv", "mine")
         self.assertEqual(tool(2, "folder", self.path("out"), self.scene, "--force").returncode, 0)
         found = sorted(
@@ -236,6 +252,11 @@ class Folders(Folder):
         self.put("out/scene.yaml", "title: old\n")
         self.put("out/resolved.yaml", "title: old\n")
         self.put("out/stop", "")
+        self.put("out/outflow.csv", "time [s],outflow [1]\n")
+        run = tool(1, "folder", self.path("out"), self.scene)
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("holds another scene.yaml", errors(run)[0])
+        self.put("out/log.txt", "democles 0.3.0 (abc)\n")
         self.assertEqual(tool(1, "folder", self.path("out"), self.scene).returncode, 0)
         self.assertEqual(sorted(os.listdir(self.path("out"))), ["resolved.yaml", "scene.yaml"])
 
@@ -304,17 +325,32 @@ class Record(Folder):
             self.assertEqual(run.stdout.replace(b"\r\n", b"\n").count(b"\n"), 3, run.stdout)
             self.assertGreater(run.stdout.count(b"\rstep"), 5)
             self.assertIn("step 900 of 1000", self.get("log.txt"))
+            for name in ("log.txt", "outflow.csv"):
+                os.remove(self.path(name))
 
     def test_no_room(self):
-        """/dev/full takes nothing: each file says so and the job ends."""
+        """Each file that takes no more says so and the job ends."""
         for name in ("outflow.csv", "log.txt"):
-            os.symlink("/dev/full", self.path(name))
-            run = tool(2, "record", self.dir)
+            run = tool(2, "record", self.dir, name)
             self.assertEqual(run.returncode, 6)
             self.assertEqual(len(errors(run)), 1, run.stderr)
-            self.assertIn("No space left on device", errors(run)[0])
+            self.assertIn("File too large", errors(run)[0])
             self.assertIn(name, errors(run)[0])
-            os.remove(self.path(name))
+            for left in os.listdir(self.dir):
+                os.remove(self.path(left))
+
+    def test_links_are_not_followed(self):
+        """A link of the name that a run makes: nothing behind it is touched."""
+        self.put("victim", "mine")
+        for name in ("outflow.csv", "log.txt"):
+            os.symlink("victim", self.path(name))
+            run = tool(2, "record", self.dir)
+            self.assertEqual(run.returncode, 6)
+            self.assertIn(name, errors(run)[0])
+            self.assertEqual(self.get("victim"), "mine")
+            for left in ("outflow.csv", "log.txt"):
+                if os.path.lexists(self.path(left)):
+                    os.remove(self.path(left))
 
 
 if __name__ == "__main__":

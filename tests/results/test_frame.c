@@ -1,5 +1,6 @@
 /* A frame on disk: what ParaView 5.11 asks for to the byte, the state that a run continues from,
  * and nothing half done. Run on 1 to 3 ranks. */
+#include <dirent.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -191,9 +192,24 @@ static void test_whole_frame_passes_check(void **state)
     if (wrong) print_message("%s\n", wrong);
     assert_null(wrong);
     assert_int_not_equal(access(dir, F_OK), -1);
-    char *tmp = fail_format("%s.tmp", path);
-    assert_int_equal(access(tmp, F_OK), -1);
-    free(tmp);
+    DIR *folder = opendir(dir);
+    for (struct dirent *entry; (entry = readdir(folder));)
+        assert_null(strstr(entry->d_name, ".tmp"));
+    closedir(folder);
+}
+
+/* No other name is that of a frame. */
+static void test_names(void **state)
+{
+    static const char *const other[] = {"frame_7.hdf", "frame_0000007.hdf", "frame_000007_kept.hdf",
+        "frame_000007.old.hdf", "frame_-00007.hdf", "frame_+00007.hdf", "frame_ 00007.hdf",
+        "frame_000007.hdf.tmp", "frame_000007.hdf ", "frame_.hdf", "frame_0x0007.hdf",
+        "frame_99999999999999999999999.hdf", "aframe_000007.hdf", ""};
+    (void)state;
+    assert_int_equal(snapshot_index("frame_000007.hdf"), 7);
+    assert_int_equal(snapshot_index("frame_1234567.hdf"), 1234567);
+    for (size_t k = 0; k < sizeof other / sizeof *other; k++)
+        if (snapshot_index(other[k]) >= 0) fail_msg("%s is taken for a frame", other[k]);
 }
 
 /* Several H5Dwrite per column, as many as the fullest rank needs, give the same file content as
@@ -233,6 +249,7 @@ static void test_pieces(void **state)
 
 int main(int argc, char **argv)
 {
+    snapshot_serve(argc, argv);
     comm = comm_create(&argc, &argv);
     if (comm->rank == 0) {
         strcpy(dir, "/tmp/democles_frame_XXXXXX");
@@ -250,6 +267,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_attributes),
         cmocka_unit_test(test_shared_columns_are_links),
         cmocka_unit_test(test_whole_frame_passes_check),
+        cmocka_unit_test(test_names),
         cmocka_unit_test(test_pieces),
     };
     int failed = comm->rank == 0 ? cmocka_run_group_tests_name("frame", tests, NULL, NULL) : 0;

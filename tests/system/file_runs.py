@@ -1,7 +1,11 @@
 #!/usr/bin/python3
 """Files of results: how many there are, whose they are, and what becomes of a user's own."""
 import glob
+import json
 import os
+import shutil
+import signal
+import subprocess
 
 import cli
 
@@ -73,6 +77,194 @@ class Often(Files):
         self.good("run", "s.yaml", "-o", "d", *sets)
         self.assertEqual(len(self.names("d", "frame_*")), 5)
         self.assertEqual(len(self.text("d/m.csv").splitlines()), 6)
+
+
+class Owned(Files):
+    """Whose a file is: a user's own is neither overwritten nor deleted without --force."""
+
+    def refused(self, what, *args, folder="d"):
+        """Code 2, one line that names what is in the way, and nothing changed."""
+        before = self.state()
+        run = self.call("run", "s.yaml", "-o", folder, *args)
+        self.assertEqual((run.code, len(run.err)), (2, 1), run.err)
+        self.assertIn(what, run.err[0])
+        self.assertIn("--force", run.err[0])
+        self.assertEqual(self.state(), before)
+
+    def state(self):
+        """Every file and link below the folder, with its content."""
+        found = {}
+        for at, _, names in os.walk(self.dir):
+            for name in names:
+                path = os.path.join(at, name)
+                with open(path, "rb") as file:
+                    found[path] = (os.path.islink(path), file.read())
+        return found
+
+    def test_copies_of_frames(self):
+        """Names that only resemble those of frames, before `resume` and `run --force`."""
+        self.good("run", "s.yaml", "-o", "d")
+        frame = os.path.join(self.dir, "d", "frame_000002.hdf")
+        copies = [
+            "frame_000005_keep.hdf",
+            "frame_000004.old.hdf",
+            "frame_7.hdf",
+            "frame_0000008.hdf",
+        ]
+        copies += ["frame_000009.hdf.tmp", "frame_-00009.hdf", "frame_000009.hdf~"]
+        for name in copies:
+            shutil.copy(frame, os.path.join(self.dir, "d", name))
+        os.remove(frame)
+        open(os.path.join(self.dir, "d", "frame_000009.hdf.4711.tmp"), "w").close()
+        frames = [f"frame_{k:06}.hdf" for k in range(3)]
+        self.good("resume", "d")
+        self.assertEqual(self.names("d", "frame_*"), sorted(copies + frames))
+        self.good("run", "s.yaml", "-o", "d", "--force")
+        self.assertEqual(self.names("d", "frame_*"), sorted(copies + frames))
+
+    def test_resolved_scene_is_no_run(self):
+        os.mkdir(os.path.join(self.dir, "d"))
+        resolved = self.call("check", "s.yaml", "--resolved").out
+        self.put("d/resolved.yaml", resolved)
+        self.put("d/scene.yaml", SCENE + "# my edits\n")
+        self.refused("another scene.yaml")
+        os.remove(os.path.join(self.dir, "d", "scene.yaml"))
+        self.put("d/m.csv", "precious\n")
+        self.refused("a file m.csv, the name of a measure")
+        os.remove(os.path.join(self.dir, "d", "m.csv"))
+        self.put("d/resolved.yaml", resolved + "# my edits\n")
+        self.refused("another resolved.yaml")
+        self.put("d/resolved.yaml", resolved)
+        self.good("run", "s.yaml", "-o", "d")
+
+    def test_run_killed_before_its_first_frame(self):
+        """Its log says that the folder is ours, whatever scene comes next."""
+        self.good("run", "s.yaml", "-o", "d")
+        for name in self.names("d", "frame_*") + ["run.json"]:
+            os.remove(os.path.join(self.dir, "d", name))
+        self.good("run", "s.yaml", "-o", "d", "--set", "title=other")
+        self.assertIn("title: other", self.text("d/resolved.yaml"))
+
+    def test_own_files(self):
+        for name, args in (
+            ("log.txt", []),
+            ("run.balance.csv", []),
+            ("trace.json", ["--trace"]),
+            ("stop", []),
+            ("run.json", []),
+        ):
+            os.makedirs(os.path.join(self.dir, name))
+            self.put(f"{name}/{name}", "mine\n")
+            self.refused(
+                "results already" if name == "run.json" else "a file " + name, *args, folder=name
+            )
+            self.good("run", "s.yaml", "-o", name, "--force")
+
+    def test_links(self):
+        """A link out of the folder is refused where it is in the way, and followed nowhere."""
+        pid_names = ["frame_000000.hdf.tmp", "scene.yaml.tmp", "run.json.tmp"]
+        for ranks in (1, 2):
+            for name in ["log.txt", "m.csv", "run.balance.csv", "stop", *pid_names]:
+                folder = f"{name}.{ranks}"
+                os.mkdir(os.path.join(self.dir, folder))
+                self.put("victim", "VICTIM\n")
+                os.symlink("../victim", os.path.join(self.dir, folder, name))
+                args = ["--profile"] if name == "run.balance.csv" else []
+                if name not in pid_names:
+                    self.refused("a file " + name, *args, folder=folder)
+                    args.append("--force")
+                self.good("run", "s.yaml", "-o", folder, *args, ranks=ranks)
+                self.assertEqual(self.text("victim"), "VICTIM\n")
+                self.assertFalse(
+                    any(
+                        os.path.islink(os.path.join(self.dir, folder, n))
+                        for n in self.names(folder)
+                        if n not in pid_names
+                    )
+                )
+
+    def test_links_in_a_folder_that_is_resumed(self):
+        for name in ("log.txt", "m.csv"):
+            self.good("run", "s.yaml", "-o", "d", "--steps", "50", "--force")
+            self.put("victim", self.text("d/" + name))
+            os.remove(os.path.join(self.dir, "d", name))
+            os.symlink("../victim", os.path.join(self.dir, "d", name))
+            before = self.text("victim")
+            run = self.call("resume", "d", "--quiet")
+            self.assertEqual((run.code, len(run.err)), (6, 1), run.err)
+            self.assertIn(name, run.err[0])
+            self.assertEqual(self.text("victim"), before)
+
+    def test_link_to_the_scene(self):
+        """A link that holds the very scene is left alone."""
+        os.mkdir(os.path.join(self.dir, "d"))
+        os.symlink("../s.yaml", os.path.join(self.dir, "d", "scene.yaml"))
+        self.good("run", "s.yaml", "-o", "d")
+        self.assertEqual(os.readlink(os.path.join(self.dir, "d", "scene.yaml")), "../s.yaml")
+        self.assertEqual(self.text("s.yaml"), SCENE)
+
+
+class Piped(Files):
+    """Standard output whose reader goes away."""
+
+    def pipe(self, *args, lines=0):
+        """Runs with a reader that takes so many lines and then closes the pipe."""
+        process = subprocess.Popen(
+            [cli.DEMOCLES, *args],
+            cwd=self.dir,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            # as a shell has it, not as Python has it
+            preexec_fn=lambda: signal.signal(signal.SIGPIPE, signal.SIG_DFL),
+        )
+        for _ in range(lines):
+            process.stdout.readline()
+        process.stdout.close()
+        err = process.stderr.read()
+        process.stderr.close()
+        return process.wait(60), err
+
+    def test_run_goes_on(self):
+        self.good("run", "s.yaml", "-o", "whole")
+        for lines in (0, 1):
+            code, err = self.pipe("run", "s.yaml", "-o", "d", "--force", lines=lines)
+            self.assertEqual((code, err.count("\n")), (0, 1), err)
+            self.assertIn("warning: the standard output is closed; the run goes on", err)
+            self.assertEqual(self.names("d"), self.names("whole"))
+            record, whole = json.loads(self.text("d/run.json")), json.loads(
+                self.text("whole/run.json")
+            )
+            self.assertEqual((record["exit"], record["digest"]), (0, whole["digest"]))
+            log = self.text("d/log.txt").splitlines()
+            self.assertEqual(len(log), len(self.text("whole/log.txt").splitlines()) + 1)
+            self.assertIn("step 100 of 100", "\n".join(log))
+
+    def test_resume_goes_on(self):
+        self.good("run", "s.yaml", "-o", "d", "--steps", "50")
+        code, err = self.pipe("resume", "d")
+        self.assertEqual((code, err.count("\n")), (0, 1), err)
+        self.assertEqual(json.loads(self.text("d/run.json"))["steps"], 100)
+
+    def test_what_prints_is_quiet(self):
+        for args in (
+            ["check", "s.yaml"],
+            ["check", "s.yaml", "--resolved"],
+            ["explain"],
+            ["devices"],
+            ["--help"],
+            ["--version"],
+        ):
+            for lines in (0, 1):
+                self.assertEqual(self.pipe(*args, lines=lines), (0, ""), args)
+
+    def test_full(self):
+        """A disk that is full is another matter: what was asked for is not there."""
+        with open("/dev/full", "w") as full:
+            run = self.call("check", "s.yaml", stdout=full)
+        self.assertEqual(run.code, 6)
+        self.assertIn("cannot write to the standard output", run.err[0])
 
 
 if __name__ == "__main__":
