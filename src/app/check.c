@@ -91,8 +91,7 @@ static void print_time(
                                  : "stops when its contacts are as stiff as that");
     struct scene_errors warnings = {0};
     limit_warnings(scene, elements, speed, dt, &warnings);
-    for (int k = 0; k < warnings.n; k++) printf("    warning: %s\n", warnings.text[k]);
-    scene_errors_free(&warnings);
+    check_warnings(&warnings);
 }
 
 static void print_all(

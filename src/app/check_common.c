@@ -24,6 +24,12 @@ void check_head(const struct scene *scene)
         scene->domain.remove_outside ? ", particles that leave the domain are removed" : "");
 }
 
+void check_warnings(struct scene_errors *warnings)
+{
+    for (int k = 0; k < warnings->n; k++) printf("    warning: %s\n", warnings->text[k]);
+    scene_errors_free(warnings);
+}
+
 void check_output(const struct scene *scene)
 {
     double every[] = {scene->output.every, scene->output.checkpoint_every}, n = 0;

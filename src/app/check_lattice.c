@@ -5,6 +5,7 @@
 
 #include "check_parts.h"
 #include "comm/fail.h"
+#include "lattice/lattice_fit.h"
 #include "lattice/lattice_input.h"
 #include "lattice/lattice_frequency.h"
 #include "lattice/lattice_loads.h"
@@ -32,6 +33,18 @@ static void print_material(const struct material *m)
     printf("\n");
 }
 
+/* Of round bodies and of meshes: how much of the shape the cells hold, and how fine they are. */
+static void print_fit(const struct scene *scene, const struct lattice_cells *cells, int b)
+{
+    struct lattice_fit fit = lattice_fit_of(scene, cells, b);
+    double h = scene->body[b].cell, least = fmin(fit.shape[0], fmin(fit.shape[1], fit.shape[2]));
+    if (fit.is_box && isinf(fit.radius)) return;
+    printf("        %.4g of the volume of its shape; %.3g cells along its smallest extent",
+        fit.volume, least / h);
+    if (!isinf(fit.radius)) printf(", %.3g along its smallest radius", fit.radius / h);
+    printf("\n");
+}
+
 static void print_cells(const struct scene *scene, const struct lattice_cells *cells)
 {
     printf("\ncells: %lld, links: %lld\n", (long long)cells->n, (long long)count_links(cells, -1));
@@ -43,6 +56,7 @@ static void print_cells(const struct scene *scene, const struct lattice_cells *c
         printf("    %s: %lld cells of %g m, %s, %.4g kg, %lld links within and upwards from it\n",
             body->name, (long long)cells->n_of_body[b], body->cell, m->name, mass,
             (long long)count_links(cells, b));
+        print_fit(scene, cells, b);
     }
     if (cells->n_grid > 1)
         printf("    %d grids: bodies on different grids are not joined\n", cells->n_grid);
@@ -133,6 +147,9 @@ int check_lattice(const struct comm *comm, const struct scene *scene, bool resol
         check_head(scene);
         print_cells(scene, cells);
         print_thin(scene, cells);
+        struct scene_errors warnings = {0};
+        lattice_fit_warnings(scene, cells, &warnings);
+        check_warnings(&warnings);
         print_boundaries(scene, cells);
         print_time(scene, cells);
         check_output(scene);

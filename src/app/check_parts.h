@@ -12,6 +12,8 @@ int check_lattice(const struct comm *comm, const struct scene *scene, bool resol
  * names and values. */
 void check_head(const struct scene *scene);
 void check_output(const struct scene *scene);
+/* A line each; frees them. */
+void check_warnings(struct scene_errors *warnings);
 void check_features(const struct feature_row *table, const void *features);
 
 /* The contact laws of all pairs of materials that can meet, with what follows from the sizes of the

@@ -35,6 +35,13 @@ struct lattice_kind {
     int material, grid;
 };
 
+/* The cells that a body has cut, before later bodies took some: how many, first and last on its
+ * grid. */
+struct lattice_span {
+    int64_t n;
+    int32_t low[3], high[3];
+};
+
 struct lattice_cells {
     int64_t n; /* the global id is the index; sorted by grid, z, y, x */
     struct lattice_grid *grid;
@@ -51,6 +58,7 @@ struct lattice_cells {
     double (*v)[3];
     double (*w)[3];     /* [n] likewise, angular [rad/s]; NULL together with v */
     int64_t *n_of_body; /* [scene.n_body] cells of each */
+    struct lattice_span *span; /* [scene.n_body] */
     struct lattice_loads *loads;
 };
 

@@ -79,7 +79,7 @@ static void check_counts(const struct scene *scene, const struct lattice_cells *
         if (cells->n_of_body[b] > 0) continue;
         lattice_fault(scene, errors, body->line, body->column, "bodies[%d]: '%s' has no cell: %s",
             b, body->name,
-            cut[b].n > 0 ? "later bodies have taken them all"
+            cut[b].span.n > 0 ? "later bodies have taken them all"
                          : "its shape contains no cell centre");
     }
     if (cells->n_kind > UINT8_MAX)
@@ -161,7 +161,11 @@ struct lattice_cells *lattice_cells_create(const struct scene *scene, struct sce
         append(cells, scene, g, &list);
     }
     if (errors->n == before) check_counts(scene, cells, cut, errors);
-    for (int b = 0; b < scene->n_body; b++) lattice_cut_close(&cut[b]);
+    cells->span = fail_alloc((size_t)scene->n_body * sizeof *cells->span);
+    for (int b = 0; b < scene->n_body; b++) {
+        cells->span[b] = cut[b].span;
+        lattice_cut_close(&cut[b]);
+    }
     free(cut);
     free(list.cell);
     if (errors->n == before) {
@@ -171,8 +175,9 @@ struct lattice_cells *lattice_cells_create(const struct scene *scene, struct sce
     }
     if (errors->n == before) {
         set_velocities(scene, cells);
-        return cells;
+        if (scene->lattice.relax) lattice_floating_settle(scene, cells, errors);
     }
+    if (errors->n == before) return cells;
     lattice_cells_free(cells);
     return NULL;
 }
@@ -191,5 +196,6 @@ void lattice_cells_free(struct lattice_cells *cells)
     free(cells->v);
     free(cells->w);
     free(cells->n_of_body);
+    free(cells->span);
     free(cells);
 }

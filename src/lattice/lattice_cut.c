@@ -155,6 +155,16 @@ static uint8_t *fill(const struct lattice_cut *cut)
     return there;
 }
 
+static void widen(struct lattice_span *span, int i, int j, int k)
+{
+    int at[3] = {i, j, k};
+    for (int a = 0; a < 3; a++) {
+        if (span->n == 0 || at[a] < span->low[a]) span->low[a] = at[a];
+        if (span->n == 0 || at[a] > span->high[a]) span->high[a] = at[a];
+    }
+    span->n++;
+}
+
 void lattice_cut_append(struct lattice_cut *cut, struct lattice_list *list)
 {
     uint8_t *there = fill(cut), *at = there;
@@ -170,7 +180,7 @@ void lattice_cut_append(struct lattice_cut *cut, struct lattice_list *list)
                          z = (uint64_t)(k + cut->shift[2]);
                 list->cell[list->n++] = (struct lattice_cell){
                     (z << LATTICE_BITS | y) << LATTICE_BITS | x, (int16_t)cut->index};
-                cut->n++;
+                widen(&cut->span, i, j, k);
             }
     free(there);
 }

@@ -7,6 +7,7 @@
 
 #include "comm/fail.h"
 #include "lattice_fields.h"
+#include "lattice_fit.h"
 #include "lattice_frequency.h"
 #include "lattice_restore.h"
 #include "run/output.h"
@@ -79,12 +80,23 @@ static void measure(struct sim *s)
     lattice_free(l);
 }
 
+/* Only rank 0 speaks, and of a run that begins. */
+static void warn(struct sim *s)
+{
+    struct scene_errors warnings = {NULL, 0};
+    if (s->from || s->comm->rank != 0) return;
+    lattice_fit_warnings(s->scene, s->lattice->cells, &warnings);
+    for (int i = 0; i < warnings.n; i++) log_warn(s->log, "%s", warnings.text[i]);
+    scene_errors_free(&warnings);
+}
+
 static void setup(struct sim *s)
 {
     struct lattice_run *r = s->lattice;
     log_element(s->log, "cell");
     log_print(s->log, "%lld cells in %d %s", (long long)s->n_first, s->scene->n_body,
         s->scene->n_body == 1 ? "body" : "bodies");
+    warn(s);
     if (r->input->options.energy) sim_require_double(s);
     r->input->options.partition = s->scene->partition;
     r->input->options.share = s->balance->share;
@@ -134,7 +146,8 @@ static bool is_at_rest(struct sim *s)
     bool is_second = s->step % every == 0, yes = false;
     if (is_second) {
         yes = lattice_relax_second(relax, s->scene->lattice.tolerance);
-        s->rest.left = lattice_relax_rest(relax)->left / lattice_relax_rest(relax)->scale;
+        const struct lattice_rest *rest = lattice_relax_rest(relax);
+        s->rest.left = rest->left > 0 ? rest->left / rest->scale : 0;
         s->rest.damping = lattice_relax_rest(relax)->alpha;
     } else {
         lattice_relax_first(relax);

@@ -1,4 +1,4 @@
-/* What the files that make cells share. Private to src/lattice_{cells,cracks,cut,loads}.c. */
+/* What the files that make cells share. Private to lattice_{cells_create,cracks,cut,fit,floating,rows}.c. */
 #ifndef DEMOCLES_LATTICE_PARTS_H
 #define DEMOCLES_LATTICE_PARTS_H
 
@@ -13,7 +13,7 @@ struct lattice_cut {
     int size[3]; /* cells of the bounding box */
     int grid;
     int64_t shift[3]; /* of its first cell on the grid */
-    int64_t n;        /* cells it has cut, before others took some */
+    struct lattice_span span;
 };
 
 /* One cell: place packed as z, y, x of 21 bits each, so that keys sort as cells do. */
@@ -51,5 +51,11 @@ void lattice_cracks_cut(
 void lattice_loads_create(
     const struct scene *scene, struct lattice_cells *cells, struct scene_errors *errors);
 void lattice_loads_free(struct lattice_loads *loads);
+
+/* Before a relaxation: a message for each part of the joined cells that is not held and whose loads
+ * at the end do not balance. Parts that are free and balanced begin at rest: nothing but the damping
+ * of masses would end their flight. */
+void lattice_floating_settle(
+    const struct scene *scene, struct lattice_cells *cells, struct scene_errors *errors);
 
 #endif

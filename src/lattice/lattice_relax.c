@@ -168,6 +168,12 @@ static void raise(double *largest, double value)
     *largest = isnan(value) ? (double)INFINITY : fmax(*largest, fabs(value));
 }
 
+static bool is_unloaded(const struct lattice *l)
+{
+    const double *g = l->options.gravity;
+    return !l->features.loads && !(fabs(g[0]) > 0 || fabs(g[1]) > 0 || fabs(g[2]) > 0);
+}
+
 static void measure(struct lattice_relax *r, const row *v, const row *a)
 {
     size_t n = (size_t)r->l->layout->n_owned;
@@ -183,7 +189,8 @@ static void measure(struct lattice_relax *r, const row *v, const row *a)
     }
     comm_max_f64(r->l->comm, largest, 2);
     r->rest.left = largest[0];
-    r->rest.scale = largest[1];
+    /* what carries nothing comes to rest without stress: the largest so far is the measure then */
+    r->rest.scale = is_unloaded(r->l) ? fmax(r->rest.scale, largest[1]) : largest[1];
     free(stress);
 }
 

@@ -65,5 +65,102 @@ class Plate(cli.Case):
         self.assertEqual(run.err, [f"{PLATE}:22:5: boundaries[1].where: nothing is in this region"])
 
 
+BLOCK = """method: lattice
+time: {{end: 0.01}}
+materials: {{m: {{density: 2700, young: 70 GPa, poisson: 0.3}}}}
+bodies: [{{name: block, material: m, cell: {cell}, shape: {shape}, angular_velocity: [0, 0, 10]}}]
+boundaries: [{loads}]
+lattice: {{rotation: small{relax}}}
+"""
+
+
+class Fit(cli.Case):
+    """What the cells make of a shape."""
+
+    def warnings(self, shape, cell="13 mm"):
+        self.put("scene.yaml", BLOCK.format(shape=shape, cell=cell, loads="", relax=""))
+        run = self.call("check", "scene.yaml")
+        self.assertEqual((run.code, run.err), (0, []))
+        return run.out, [line.strip() for line in run.out.splitlines() if "warning" in line]
+
+    def test_box(self):
+        box = "{{box: {{min: [0, 0, 0], max: [{}]}}}}"
+        says = (
+            "warning: body 'block': its cells measure 0.039 x 0.026 x 0.026 m, its shape "
+            "{} m; they hold {} of its volume; a cell of {} fits"
+        )
+        for size, shape, volume, cells in (
+            ("40 mm, 20 mm, 20 mm", "0.04 x 0.02 x 0.02", "1.648", "0.01 m or 0.02 m"),
+            ("40.2 mm, 20 mm, 20 mm", "0.0402 x 0.02 x 0.02", "1.64", "0.01 m or 0.02 m"),
+            ("37 mm, 20 mm, 20 mm", "0.037 x 0.02 x 0.02", "1.781", "0.003333 m"),
+        ):
+            self.assertEqual(
+                self.warnings(box.format(size))[1], [says.format(shape, volume, cells)]
+            )
+        self.assertEqual(self.warnings(box.format("39 mm, 26.1 mm, 26 mm"))[1], [])
+        self.assertEqual(self.warnings(box.format("40 mm, 20 mm, 20 mm"), "10 mm")[1], [])
+
+    def test_round(self):
+        """Cells of a tenth of the radius fill a sphere to 1 %; of a radius they do not."""
+        sphere = "{sphere: {center: [0, 0, 0], radius: 0.1}}"
+        text, warnings = self.warnings(sphere, "10 mm")
+        self.assertRegex(
+            text,
+            r"\n +(0\.99|1\.00)\d* of the volume of its shape; 20 cells along its smallest extent, "
+            "10 along its smallest radius\n",
+        )
+        self.assertEqual(warnings, [])
+        self.assertRegex(self.warnings(sphere, "100 mm")[1][0], "they hold 1.912 of its volume$")
+
+    def test_run_warns(self):
+        shape = "{box: {min: [0, 0, 0], max: [40 mm, 20 mm, 20 mm]}}"
+        self.put("scene.yaml", BLOCK.format(shape=shape, cell="13 mm", loads="", relax=""))
+        run = self.call("run", "scene.yaml", "-o", "out", "--steps", "2", ranks=2)
+        self.assertEqual(run.code, 0)
+        self.assertEqual(sum("they hold 1.648 of its volume" in line for line in run.err), 1)
+
+
+class Floating(cli.Case):
+    """Relaxation of what nothing holds."""
+
+    def end(self, loads, command="run"):
+        shape = "{box: {min: [0, 0, 0], max: [0.1, 0.04, 0.04]}}"
+        text = BLOCK.format(shape=shape, cell="10 mm", loads=loads, relax=", relax: {}")
+        self.put("scene.yaml", text)
+        more = ["-o", "out", "--force"] if command == "run" else []
+        run = self.call(command, "scene.yaml", *more)
+        return run.code, "".join(run.err)
+
+    def load(self, low, high, what):
+        box = f"{{min: [{low}, -1, -1], max: [{high}, 1, 1]}}"
+        return f"{{where: {{box: {box}}}, {what}}}"
+
+    def test_refused(self):
+        right, left = (0.0999, 1), (-1, 0.006)
+        pull = self.load(*right, "force: [1000, 0, 0]")
+        aside = self.load(*right, "force: [1000, 5, 0]")
+        held = self.load(*left, "fix: [x]")
+        nothing, partly = "is held by nothing", "is not held against every motion"
+        for loads, how, force in (
+            (pull, nothing, r"force \(1000, 0, 0\) N, moment \(0, 0, 0\) N m"),
+            (aside + ", " + held, partly, r"force \(1000, 5, 0\) N, moment \(0, 0, 0.25\) N m"),
+        ):
+            for command in ("check", "run"):
+                code, text = self.end(loads, command)
+                self.assertEqual(code, 3, text)
+                self.assertRegex(text, rf"bodies\[0\]: 'block' {how}, and its .*: {force} about")
+
+    def test_balanced(self):
+        """Loads that balance; a motion that is held; a spin that carries nothing."""
+        right, left = (0.0999, 1), (-1, 0.0001)
+        pull = self.load(*right, "force: [1000, 0, 0]")
+        for loads in (
+            pull + ", " + self.load(*left, "force: [-1000, 0, 0]"),
+            pull + ", " + self.load(-1, 0.006, "fix: [x]"),
+            "",
+        ):
+            self.assertEqual(self.end(loads), (0, ""))
+
+
 if __name__ == "__main__":
     cli.main()

@@ -1,0 +1,105 @@
+#include "lattice_fit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "comm/fail.h"
+#include "lattice_parts.h"
+
+enum { PARTS = 48, MOST_LAYERS = 10000 };
+static const double close = 0.01;
+
+/* Share of the bounding box that is inside the shape and in none of its holes. */
+static double share_inside(const struct lattice_cut *cut)
+{
+    const double *low = cut->shape.low, *high = cut->shape.high;
+    double z[PARTS], step[3];
+    uint8_t holds[PARTS], hole[PARTS];
+    int64_t n = 0;
+    for (int a = 0; a < 3; a++) step[a] = (high[a] - low[a]) / PARTS;
+    for (int k = 0; k < PARTS; k++) z[k] = low[2] + (k + 0.5) * step[2];
+    for (int j = 0; j < PARTS; j++)
+        for (int i = 0; i < PARTS; i++) {
+            double x = low[0] + (i + 0.5) * step[0], y = low[1] + (j + 0.5) * step[1];
+            region_column(&cut->shape, x, y, z, PARTS, 0, holds);
+            for (int m = 0; m < cut->body->n_minus; m++) {
+                region_column(&cut->minus[m], x, y, z, PARTS, 0, hole);
+                for (int k = 0; k < PARTS; k++) holds[k] &= !hole[k];
+            }
+            for (int k = 0; k < PARTS; k++) n += holds[k];
+        }
+    return (double)n / ((double)PARTS * PARTS * PARTS);
+}
+
+static double radius_of(const struct region *region)
+{
+    bool is_round = region->kind == REGION_CYLINDER || region->kind == REGION_SPHERE;
+    return is_round ? region->radius : HUGE_VAL;
+}
+
+struct lattice_fit lattice_fit_of(
+    const struct scene *scene, const struct lattice_cells *cells, int b)
+{
+    const struct body *body = &scene->body[b];
+    const struct lattice_span *span = &cells->span[b];
+    struct lattice_fit fit = {
+        .is_box = body->shape.kind == REGION_BOX, .radius = radius_of(&body->shape)};
+    struct scene_errors errors = {0};
+    struct lattice_cut cut;
+    if (lattice_cut_open(&cut, scene, b, &errors)) {
+        double box = 1, h = body->cell;
+        for (int a = 0; a < 3; a++) {
+            fit.cells[a] = (span->high[a] - span->low[a] + 1) * h;
+            fit.shape[a] = cut.shape.high[a] - cut.shape.low[a];
+            box *= fit.shape[a];
+        }
+        bool is_whole = fit.is_box && body->n_minus == 0;
+        fit.volume = (double)span->n * h * h * h / (box * (is_whole ? 1 : share_inside(&cut)));
+        for (int m = 0; m < body->n_minus; m++)
+            fit.radius = fmin(fit.radius, radius_of(&body->minus[m]));
+    }
+    lattice_cut_close(&cut);
+    scene_errors_free(&errors);
+    return fit;
+}
+
+/* Whether cells of size h fill all three lengths. */
+static bool is_fitting(const double length[3], double h)
+{
+    for (int a = 0; a < 3; a++)
+        if (fabs(length[a] - nearbyint(length[a] / h) * h) > close * length[a]) return false;
+    return true;
+}
+
+/* " (a cell of 0.01 m or 0.02 m fits)": the nearest below and above h; empty if there are none. */
+static char *fitting_sizes(const double length[3], double h)
+{
+    double least = fmin(length[0], fmin(length[1], length[2]));
+    int layers = (int)fmax(1, fmin(ceil(least / h), MOST_LAYERS)), below = layers, above = layers;
+    while (below <= MOST_LAYERS && !is_fitting(length, least / below)) below++;
+    while (above >= 1 && (least / above <= h || !is_fitting(length, least / above))) above--;
+    if (below > MOST_LAYERS && above < 1) return fail_strdup("");
+    if (above < 1) return fail_format("; a cell of %.4g m fits", least / below);
+    if (below > MOST_LAYERS) return fail_format("; a cell of %.4g m fits", least / above);
+    return fail_format("; a cell of %.4g m or %.4g m fits", least / below, least / above);
+}
+
+void lattice_fit_warnings(
+    const struct scene *scene, const struct lattice_cells *cells, struct scene_errors *warnings)
+{
+    for (int b = 0; b < scene->n_body; b++) {
+        struct lattice_fit fit = lattice_fit_of(scene, cells, b);
+        double off = fabs(fit.volume - 1);
+        for (int a = 0; a < 3 && fit.is_box; a++)
+            off = fmax(off, fabs(fit.cells[a] / fit.shape[a] - 1));
+        if (!(off > close)) continue;
+        const double *c = fit.cells, *s = fit.shape;
+        char *sizes = fit.is_box ? fitting_sizes(s, scene->body[b].cell) : fail_strdup("");
+        scene_errors_add(warnings,
+            "body '%s': its cells measure %.4g x %.4g x %.4g m, its shape %.4g x %.4g x %.4g m; "
+            "they hold %.4g of its volume%s",
+            scene->body[b].name, c[0], c[1], c[2], s[0], s[1], s[2], fit.volume, sizes);
+        free(sizes);
+    }
+}
