@@ -151,13 +151,41 @@ static bool is_text(const unsigned char *data, size_t size)
     return strnlen((const char *)data, HEADER) == (size < HEADER ? size : HEADER);
 }
 
+/* Of a text with a NUL byte in it; NULL if there is none. */
+static char *find_nul(const char *path, const char *text, size_t size)
+{
+    const char *nul = memchr(text, 0, size), *start = text;
+    int line = 1;
+    for (const char *p = text; nul && p < nul; p++)
+        if (*p == '\n') {
+            line++;
+            start = p + 1;
+        }
+    return nul ? fail_format(
+                     "%s:%d:%d: NUL byte: this text is damaged", path, line, (int)(nul - start) + 1)
+               : NULL;
+}
+
+/* Whether it is text up to a first facet, not a binary file whose header begins with `solid`. */
+static bool has_facet(const char *text, size_t size)
+{
+    static const char word[] = "facet";
+    for (size_t k = 0; k + strlen(word) <= size && text[k]; k++)
+        if (!strncasecmp(text + k, word, strlen(word))) return true;
+    return false;
+}
+
 static char *read_soup(const char *path, const unsigned char *data, size_t size, struct soup *soup)
 {
     if (size >= HEADER && size == HEADER + (size_t)u32_at(data + 80) * RECORD)
         return read_binary(path, data, soup);
-    if (size >= 5 && strncasecmp((const char *)data, "solid", 5) == 0 &&
-        strlen((const char *)data) == size)
-        return read_ascii(path, (const char *)data, soup);
+    if (size >= 5 && strncasecmp((const char *)data, "solid", 5) == 0) {
+        const char *text = (const char *)data;
+        char *damaged = find_nul(path, text, size);
+        if (!damaged) return read_ascii(path, text, soup);
+        if (has_facet(text, size)) return damaged;
+        free(damaged);
+    }
     if (size > 0 && is_text(data, size) && strncasecmp((const char *)data, "solid", 5) != 0)
         return fail_format("%s: not an STL file: text that does not begin with 'solid'", path);
     if (size < HEADER)

@@ -124,6 +124,18 @@ class Wrong(Scenes):
         self.put("listed.csv", "x,y,z,radius\n0.1,0.1,0.1,0.002\n0.2,nan,0.1,0.002\n")
         self.refused([r"listed\.csv:3:5: .*nan.*"])
 
+    def test_nul_bytes(self):
+        """As after a power cut: in the scene, in --set, in a CSV."""
+        nul = "NUL byte: this is no text, or damaged"
+        self.put("listed.csv", LISTED + "\0\0\0\0\n0.3,0.1,0.1,0.002\n")
+        self.refused([r"listed\.csv:4:1: " + nul])
+        self.put("listed.csv", LISTED)
+        run = self.call("check", "scene.yaml", "--set", 'title="a\\0b"')
+        self.assertEqual((run.code, len(run.err)), (3, 1))
+        self.assertIn("text with a null character", run.err[0])
+        self.put("scene.yaml", SCENE + "\0\0\0")
+        self.refused([r"scene\.yaml:\d+:1: control character 0x00"])
+
     def test_unreadable_stl(self):
         self.put("mould.stl", "no surface at all")
         self.refused([r"scene\.yaml:20: wall 'mould': .*mould\.stl.*"])

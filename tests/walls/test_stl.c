@@ -83,6 +83,10 @@ static void test_refused(void **unused)
         ":7: more than three corners in a triangle");
     refuse_text("solid s\nouter loop\nvertex 0 0 0\nendloop\nendsolid\n",
         ":4: a triangle has 1 of its 3 corners");
+    static const char damaged[] = "solid s\n" FACET("0 0 0", "1 0\0 0", "0 1 0") "endsolid\n",
+                      tail[] = "solid s\n" FACET("0 0 0", "1 0 0", "0 1 0") "\0\0\0\0\0";
+    refuse(damaged, sizeof damaged - 1, ":5:11: NUL byte: this text is damaged");
+    refuse(tail, sizeof tail - 1, ":9:1: NUL byte: this text is damaged");
     refuse_text("solid s\nfacte normal\nendsolid\n", ":2: 'facte' is not a keyword of STL");
     refuse_text("solid s\n" FACET("0 0 0", "1 0 0", "2 0 0") "endsolid\n",
         ": all triangles have zero area (1)");
