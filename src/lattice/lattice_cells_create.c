@@ -44,18 +44,13 @@ static int kind_of(struct lattice_cells *cells, int material, int grid)
     return cells->n_kind++;
 }
 
-static void *grow(void *old, size_t n, size_t bytes)
-{
-    return fail_realloc(old, n * bytes);
-}
-
 static void append(struct lattice_cells *cells, const struct scene *scene, int grid,
     const struct lattice_list *list)
 {
     size_t n = (size_t)cells->n + list->n;
-    cells->at = grow(cells->at, n, sizeof *cells->at);
-    cells->kind_of = grow(cells->kind_of, n, sizeof *cells->kind_of);
-    cells->body = grow(cells->body, n, sizeof *cells->body);
+    cells->at = fail_realloc(cells->at, n * sizeof *cells->at);
+    cells->kind_of = fail_realloc(cells->kind_of, n * sizeof *cells->kind_of);
+    cells->body = fail_realloc(cells->body, n * sizeof *cells->body);
     /* of each body, 0: not yet known */
     int *kind = fail_alloc((size_t)scene->n_body * sizeof *kind);
     for (size_t k = 0; k < list->n; k++, cells->n++) {

@@ -5,6 +5,7 @@
  * test per site; with gravity along an axis, only up to the layer where `count` is reached. */
 #include "comm/fail.h"
 #include "generate_parts.h"
+#include "results/digest.h"
 #include "shape/region.h"
 
 #include <math.h>
@@ -16,17 +17,10 @@ static const double slack = 1e-9;
 
 /* Random number in [0, 1) as a function of its key: splitmix64's finaliser over seed, site and
  * stream (Steele, Lea, Flood 2014). */
-static uint64_t mix(uint64_t z)
-{
-    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-    return z ^ z >> 31;
-}
-
 static double random_at(uint64_t seed, uint64_t site, uint64_t stream)
 {
-    const uint64_t step = 0x9e3779b97f4a7c15u;
-    uint64_t h = mix(mix(mix(seed + step) + site * step + step) ^ (stream + 1) * step);
+    uint64_t of_site = digest_mix(digest_mix(seed + DIGEST_G) + site * DIGEST_G + DIGEST_G),
+             h = digest_mix(of_site ^ (stream + 1) * DIGEST_G);
     return (double)(h >> 11) * 0x1p-53;
 }
 
