@@ -3,6 +3,7 @@
  * Spacing s = (1 + jitter) d_max, displacement at most jitter d_max/2 per axis: a sphere never
  * leaves its cube of edge s, so spheres never overlap, whatever the random numbers are. Costs one
  * test per site; with gravity along an axis, only up to the layer where `count` is reached. */
+#include "base/vector.h"
 #include "comm/fail.h"
 #include "generate_parts.h"
 #include "results/digest.h"
@@ -36,9 +37,11 @@ struct fill {
 
 static void find_up(struct fill *fill, const double gravity[3])
 {
-    double g = sqrt(gravity[0] * gravity[0] + gravity[1] * gravity[1] + gravity[2] * gravity[2]);
     fill->up[2] = 1;
-    for (int a = 0; a < 3 && g > 0; a++) fill->up[a] = -gravity[a] / g;
+    if (vector_is_direction(gravity)) {
+        for (int a = 0; a < 3; a++) fill->up[a] = -gravity[a];
+        vector_normalise(fill->up);
+    }
     fill->layers_along = 2;
     for (int a = 1; a >= 0; a--)
         if (fabs(fill->up[a]) > fabs(fill->up[fill->layers_along])) fill->layers_along = a;
