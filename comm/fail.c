@@ -1,7 +1,6 @@
 #include "fail.h"
 
 #include <mpi.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -89,15 +88,22 @@ char *fail_strdup(const char *text)
     return memcpy(fail_alloc(n), text, n);
 }
 
-char *fail_format(const char *format, ...)
+char *fail_vformat(const char *format, va_list args)
 {
-    va_list args, again;
-    va_start(args, format);
+    va_list again;
     va_copy(again, args);
     int n = vsnprintf(NULL, 0, format, args);
-    va_end(args);
     char *text = fail_alloc((size_t)n + 1);
     vsnprintf(text, (size_t)n + 1, format, again);
     va_end(again);
+    return text;
+}
+
+char *fail_format(const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    char *text = fail_vformat(format, args);
+    va_end(args);
     return text;
 }

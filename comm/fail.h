@@ -4,6 +4,7 @@
 #ifndef DEMOCLES_FAIL_H
 #define DEMOCLES_FAIL_H
 
+#include <stdarg.h>
 #include <stddef.h>
 
 /* Exit codes of the program, a contract with the user. */
@@ -39,5 +40,6 @@ void *fail_realloc(void *old, size_t bytes);
 char *fail_strdup(const char *text);
 /* printf into fresh memory, owned by the caller. */
 char *fail_format(const char *format, ...) __attribute__((format(printf, 1, 2)));
+char *fail_vformat(const char *format, va_list args) __attribute__((format(printf, 1, 0)));
 
 #endif

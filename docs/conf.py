@@ -45,8 +45,8 @@ def visit_block(self, node):
 
 
 def setup(app):
-    """Formulas go into the page as TeX; KaTeX draws them in the browser. Without KaTeX they stay TeX,
-    which can be read."""
+    """Formulas go into the page as TeX; KaTeX draws them in the browser.
+    Without KaTeX they stay TeX, which can be read."""
     app.add_html_math_renderer("katex", (visit_inline, None), (visit_block, None))
     if KATEX.is_dir():
         app.add_css_file("katex.min.css")

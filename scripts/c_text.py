@@ -1,4 +1,5 @@
-"""What the checks share: the C and OpenCL files of this checkout, and their text without comments, strings and preprocessor lines."""
+"""What the checks share: the C and OpenCL files of this checkout, and their text without comments,
+strings and preprocessor lines."""
 import pathlib
 import re
 
@@ -34,7 +35,8 @@ def code(text, keep_strings=False):
 
 
 def without_preprocessor(text):
-    """Code without preprocessor lines, and of an #if only the first branch: so that braces balance."""
+    """Code without preprocessor lines, and of an #if only the first branch:
+    so that braces balance."""
     out, skip = [], []
     continued = False
     for line in text.split("\n"):

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""embed.py OUTPUT FILE...: writes kernel_source.c, the table of name, folder and text of each FILE that src/device/kernel_source.h declares."""
+"""embed.py OUTPUT FILE...: writes kernel_source.c, the table of name, folder and text of each FILE
+that src/device/kernel_source.h declares."""
 import pathlib
 import sys
 

@@ -1,17 +1,23 @@
 #!/usr/bin/python3
-"""make_moulds.py [DIR]: writes the moulds of the cases as ASCII STL in mm (DIR: the cases' folder, default cases/ of this checkout).
+"""make_moulds.py [DIR]: writes the moulds of the cases as ASCII STL in mm (DIR: the cases' folder,
+default cases/ of this checkout).
 
-V-funnel for mortar (Okamura, Ozawa): top 270 x 30, taper 240 high, neck 60 high, outlet 30 x 30. Outlet at z = 0, axis z; the taper is in x alone.
-    Volume 30 x 30 x 60 + 30 x 240 x (30 + 270)/2 mm3 = 1.134 L. 10,600 spheres of 5 mm are 0.694 L: at a solid fraction of 0.612 they just fill it.
-    On the lattice that they start from (pitch 1.05 x 5 mm, so 0.45 solid) they need more room: a collar with straight walls carries on above the
+V-funnel for mortar (Okamura, Ozawa): top 270 x 30, taper 240 high, neck 60 high, outlet 30 x 30.
+Outlet at z = 0, axis z; the taper is in x alone.
+    Volume 30 x 30 x 60 + 30 x 240 x (30 + 270)/2 mm3 = 1.134 L. 10,600 spheres of 5 mm are 0.694 L:
+    at a solid fraction of 0.612 they just fill it. On the lattice that they start from (pitch 1.05
+    x 5 mm, so 0.45 solid) they need more room: a collar with straight walls carries on above the
     funnel.
-L-box of EN 12350-10 (leg 100 x 200 in plan, 600 high; trough 200 wide, 150 high, 700 long), model scale 0.45:
+L-box of EN 12350-10 (leg 100 x 200 in plan, 600 high; trough 200 wide, 150 high, 700 long), model
+scale 0.45:
     leg 45 x 90 x 270, trough 90 wide, 67.5 high, 315 long, opening of the gate 90 x 67.5 at x = 45.
-    The leg holds 1.0935 L; 46,680 spheres of 3 mm are 0.660 L: solid fraction 0.6035. Bars of 12 mm become 5.4 mm: three of them leave gaps of
-    18.45 mm (centres at y = 21.15, 45, 68.85), two leave 26.4 mm (y = 29.1, 60.9); they are cylinders in the scene, not part of this surface.
-    The lattice of pitch 3.15 needs 375 mm of leg, so its walls go up to 390 mm.
+    The leg holds 1.0935 L; 46,680 spheres of 3 mm are 0.660 L: solid fraction 0.6035. Bars of 12 mm
+    become 5.4 mm: three of them leave gaps of 18.45 mm (centres at y = 21.15, 45, 68.85), two leave
+    26.4 mm (y = 29.1, 60.9); they are cylinders in the scene, not part of this surface. The lattice
+    of pitch 3.15 needs 375 mm of leg, so its walls go up to 390 mm.
 
-Neighbouring faces share their corners, so that no sphere meets an edge that a neighbour does not have."""
+Neighbouring faces share their corners, so that no sphere meets an edge that a neighbour does not
+have."""
 import pathlib
 import sys
 
@@ -60,7 +66,8 @@ def volume(triangles):
 
 
 def funnel(levels, closed):
-    """Stacked rings of four walls. levels: (z, half width in x, half width in y) from below; normals point outwards."""
+    """Stacked rings of four walls. levels: (z, half width in x, half width in y)
+    from below; normals point outwards."""
     rings = [[(-x, -y, z), (x, -y, z), (x, y, z), (-x, y, z)] for z, x, y in levels]
     triangles = []
     for low, high in zip(rings, rings[1:]):
@@ -88,14 +95,17 @@ def v_funnel(folder):
     ]
     triangles = funnel(inner, closed=True)
     write_stl(folder / "filling.stl", "filling", triangles)
+    below_collar = [(h, x, f["depth"] / 2) for h, x in zip(z[:3], half)]
     print(
-        f"  funnel up to z = {z[2]:g} mm: {volume(funnel([(h, x, f['depth'] / 2) for h, x in zip(z[:3], half)], closed=True)) / 1e6:.4f} L, "
+        f"  funnel up to z = {z[2]:g} mm: "
+        f"{volume(funnel(below_collar, closed=True)) / 1e6:.4f} L, "
         f"filling: {volume(triangles) / 1e6:.4f} L"
     )
 
 
 def l_box(folder):
-    """Faces as quads between the grid lines x0 x1 x2, z0 z1 z2, so that floor, sides and front meet at common corners."""
+    """Faces as quads between the grid lines x0 x1 x2, z0 z1 z2,
+    so that floor, sides and front meet at common corners."""
     s = L_BOX["scale"]
     x0, x1, x2 = 0.0, s * L_BOX["leg"][0], s * (L_BOX["leg"][0] + L_BOX["trough"][0])
     y0, y1 = 0.0, s * L_BOX["leg"][1]
@@ -118,7 +128,8 @@ def l_box(folder):
         triangles += quad(*(face[::-1] if turned else face))
     write_stl(folder / "l_box.stl", "l_box", triangles)
     print(
-        f"  leg {x1:g} x {y1:g} x {s * L_BOX['leg'][2]:g} mm: {x1 * y1 * s * L_BOX['leg'][2] / 1e6:.4f} L, trough {x2 - x1:g} x {y1:g} x {z1:g} mm"
+        f"  leg {x1:g} x {y1:g} x {s * L_BOX['leg'][2]:g} mm: "
+        f"{x1 * y1 * s * L_BOX['leg'][2] / 1e6:.4f} L, trough {x2 - x1:g} x {y1:g} x {z1:g} mm"
     )
 
 

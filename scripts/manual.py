@@ -1,7 +1,9 @@
 #!/usr/bin/python3
-"""manual.py program|scene|tools|completion DESCRIPTION: democles(1), democles-scene(5), democles-tools(1), or the completion of bash.
+"""manual.py program|scene|tools|completion DESCRIPTION: democles(1), democles-scene(5),
+democles-tools(1), or the completion of bash.
 
-DESCRIPTION is what src/app/describe.c prints, the tables behind --help and `explain`. What the tools do stands above their modules."""
+DESCRIPTION is what src/app/describe.c prints, the tables behind --help and `explain`. What the
+tools do stands above their modules."""
 import ast
 import pathlib
 import re
@@ -11,7 +13,8 @@ TOOLS = pathlib.Path(__file__).resolve().parent / "democles"
 
 
 class Description:
-    """`commands`: name -> (usage, text, options [(name, value, text)]); `codes` of exit; `keys` of scenes: rows of columns; `notes` below them."""
+    """`commands`: name -> (usage, text, options [(name, value, text)]); `codes` of exit; `keys` of
+    scenes: rows of columns; `notes` below them."""
 
     def __init__(self, text):
         *commands, program, scene = text.split("\f")
@@ -61,7 +64,8 @@ def program_page(d):
         ".SH SYNOPSIS",
         *(line for usage, _, _ in d.commands.values() for line in (f".B {roff(usage)}", ".br")),
         ".SH DESCRIPTION",
-        f"This is {roff(version)}. Particles and solids as lattices, described by a scene in YAML; see",
+        f"This is {roff(version)}. Particles and solids as lattices, described by a scene in "
+        "YAML; see",
         ".BR democles-scene (5)",
         "for its keys, and",
         ".BR democles-tools (1)",
@@ -90,7 +94,8 @@ def program_page(d):
 def scene_page(d):
     parts = [
         ".SH DESCRIPTION",
-        "A scene is a YAML file with these keys. A list is marked by [], a name of your choice by NAME.",
+        "A scene is a YAML file with these keys. A list is marked by [], a name of your choice by "
+        "NAME.",
         ".SH KEYS",
     ]
     for key, kind, unit, default, meaning in d.keys:
@@ -165,7 +170,9 @@ _democles()
     esac
     case $before in
         -o) mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
-        --precision) mapfile -t COMPREPLY < <(compgen -W "{' '.join(d.words('precision'))}" -- "$word") ;;
+        --precision)
+            mapfile -t COMPREPLY < <(compgen -W "{' '.join(d.words('precision'))}" -- "$word")
+            ;;
         --set)
             mapfile -t COMPREPLY < <(compgen -W "{' '.join(settable)}" -- "$word")
             compopt -o nospace ;;

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Starts the tool that this file is called as: scripts/plot.py and democles-plot are links to it, and run democles/plot.py."""
+"""Starts the tool that this file is called as:
+scripts/plot.py and democles-plot are links to it, and run democles/plot.py."""
 import importlib
 import os
 import pathlib

@@ -1,9 +1,12 @@
 #!/usr/bin/python3
-"""mpirun for tests, with what the MPI in use needs (scripts/democles/mpi.py), and the same streams and exit code.
+"""mpirun for tests, with what the MPI in use needs (scripts/democles/mpi.py), and the same streams
+and exit code.
 
-Open MPI 4.1.4's mpirun now and then dies of SIGSEGV in a thread of its own (libpmix over libevent in its backtrace) while it ends a job that aborts.
-That says nothing of the program under test, so such a job is run once more. A rank that crashes is no such case: mpirun then exits with 139.
-Nor does it when LeakSanitizer, which stops all threads of a process that ends, crashes because they are ending too: it says so."""
+Open MPI 4.1.4's mpirun now and then dies of SIGSEGV in a thread of its own (libpmix over libevent
+in its backtrace) while it ends a job that aborts. That says nothing of the program under test, so
+such a job is run once more. A rank that crashes is no such case: mpirun then exits with 139. Nor
+does it when LeakSanitizer, which stops all threads of a process that ends, crashes because they are
+ending too: it says so."""
 import pathlib
 import signal
 import subprocess
@@ -19,7 +22,8 @@ FORWARDED = (signal.SIGINT, signal.SIGTERM, signal.SIGUSR1, signal.SIGUSR2)
 
 
 def attempt(kept):
-    """Return code of mpirun, and whether it counts. kept: (stream of ours, file in its place or None for the stream itself)."""
+    """Return code of mpirun, and whether it counts. kept: (stream of ours, file in its place or
+    None for the stream itself)."""
     child = subprocess.Popen(
         mpi.command(*sys.argv[1:]), env=mpi.environment(), stdout=kept[0][1], stderr=kept[1][1]
     )

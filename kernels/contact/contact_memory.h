@@ -47,26 +47,18 @@
 #define RESULT_WIDTH RESULT_WIDTH_OF(FLAG)
 
 #ifdef __OPENCL_VERSION__
+#include "common/planes.h"
+
 /* Vectors in rows of local memory [row][BATCH], l the contact. */
 #define ROW3_LOAD(type, memory, row, l)                                                            \
     type((memory)[(row)*BATCH + (l)], (memory)[((row) + 1) * BATCH + (l)],                         \
         (memory)[((row) + 2) * BATCH + (l)])
 #define ROW3_STORE(memory, row, l, x, y, z)                                                        \
-    (memory)[(row)*BATCH + (l)] = (x);                                                             \
-    (memory)[((row) + 1) * BATCH + (l)] = (y);                                                     \
-    (memory)[((row) + 2) * BATCH + (l)] = (z)
-
-LAW vec3 plane3_load(__global const real *plane, size_t capacity, size_t l)
-{
-    return v3(plane[l], plane[capacity + l], plane[2 * capacity + l]);
-}
-
-LAW void plane3_store(__global real *plane, size_t capacity, size_t l, vec3 a)
-{
-    plane[l] = a.x;
-    plane[capacity + l] = a.y;
-    plane[2 * capacity + l] = a.z;
-}
+    do {                                                                                           \
+        (memory)[(row)*BATCH + (l)] = (x);                                                         \
+        (memory)[((row) + 1) * BATCH + (l)] = (y);                                                 \
+        (memory)[((row) + 2) * BATCH + (l)] = (z);                                                 \
+    } while (0)
 
 LAW struct contact_history history_none(void)
 {
@@ -83,13 +75,13 @@ LAW struct contact_history history_load(
 {
     struct contact_history h = history_none();
     if (WITH_HISTORY) h.state = state[l];
-    if (WITH_TANGENTIAL) h.xi = plane3_load(history + XI_AT * capacity, capacity, l);
-    if (WITH_ROLLING_EPSD) h.theta = plane3_load(history + THETA_AT * capacity, capacity, l);
+    if (WITH_TANGENTIAL) h.xi = v3_load(history + XI_AT * capacity, capacity, 0, l);
+    if (WITH_ROLLING_EPSD) h.theta = v3_load(history + THETA_AT * capacity, capacity, 0, l);
     if (WITH_ENERGY) h.damping_n = history[DAMPING_N_AT * capacity + l];
     if (WITH_ENERGY && WITH_TANGENTIAL_DAMPING)
-        h.damping_t = plane3_load(history + DAMPING_T_AT * capacity, capacity, l);
+        h.damping_t = v3_load(history + DAMPING_T_AT * capacity, capacity, 0, l);
     if (WITH_ENERGY && WITH_ROLLING)
-        h.damping_r = plane3_load(history + DAMPING_R_AT * capacity, capacity, l);
+        h.damping_r = v3_load(history + DAMPING_R_AT * capacity, capacity, 0, l);
     return h;
 }
 
@@ -97,13 +89,13 @@ LAW void history_store(struct contact_history h, __global real *history, __globa
     size_t capacity, size_t l)
 {
     if (WITH_HISTORY) state[l] = h.state;
-    if (WITH_TANGENTIAL) plane3_store(history + XI_AT * capacity, capacity, l, h.xi);
-    if (WITH_ROLLING_EPSD) plane3_store(history + THETA_AT * capacity, capacity, l, h.theta);
+    if (WITH_TANGENTIAL) v3_store(history + XI_AT * capacity, capacity, 0, l, h.xi);
+    if (WITH_ROLLING_EPSD) v3_store(history + THETA_AT * capacity, capacity, 0, l, h.theta);
     if (WITH_ENERGY) history[DAMPING_N_AT * capacity + l] = h.damping_n;
     if (WITH_ENERGY && WITH_TANGENTIAL_DAMPING)
-        plane3_store(history + DAMPING_T_AT * capacity, capacity, l, h.damping_t);
+        v3_store(history + DAMPING_T_AT * capacity, capacity, 0, l, h.damping_t);
     if (WITH_ENERGY && WITH_ROLLING)
-        plane3_store(history + DAMPING_R_AT * capacity, capacity, l, h.damping_r);
+        v3_store(history + DAMPING_R_AT * capacity, capacity, 0, l, h.damping_r);
 }
 
 #if WITH_WALL_WORK
@@ -113,8 +105,8 @@ LAW void history_store(struct contact_history h, __global real *history, __globa
 LAW real wall_work(
     vec3 force, vec3 v_wall, real dt, __global real *history, size_t capacity, size_t l)
 {
-    vec3 before = plane3_load(history + WALL_FORCE_AT * capacity, capacity, l);
-    plane3_store(history + WALL_FORCE_AT * capacity, capacity, l, force);
+    vec3 before = v3_load(history + WALL_FORCE_AT * capacity, capacity, 0, l);
+    v3_store(history + WALL_FORCE_AT * capacity, capacity, 0, l, force);
     return (real)0.5 * dt * v3_dot(v3_add(before, force), v_wall);
 }
 #endif

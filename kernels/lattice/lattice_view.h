@@ -6,6 +6,7 @@
 #define DEMOCLES_LATTICE_VIEW_H
 
 #include "common/batch.h"
+#include "common/planes.h"
 #include "lattice_state.h"
 
 #ifndef RUN_AXIS
@@ -31,20 +32,20 @@ struct lattice_view {
 LAW struct link_cell lattice_cell(struct lattice_view s, size_t i)
 {
     struct link_cell c;
-    c.u = p3(s.x[i], s.x[s.plane + i], s.x[2 * s.plane + i]);
+    c.u = p3_load(s.x, s.plane, 0, i);
     c.theta = c.u;
     c.q = quat_of(1, 0, 0, 0);
     c.v = c.w = v3(0, 0, 0);
     if (WITH_TURN)
         c.q = quat_of(
             s.x[3 * s.plane + i], s.x[4 * s.plane + i], s.x[5 * s.plane + i], s.x[6 * s.plane + i]);
-    else c.theta = p3(s.x[3 * s.plane + i], s.x[4 * s.plane + i], s.x[5 * s.plane + i]);
+    else c.theta = p3_load(s.x, s.plane, 3, i);
     return c;
 }
 LAW struct link_cell lattice_moving(struct lattice_view s, size_t i, struct link_cell c)
 {
-    c.v = v3(s.v[i], s.v[s.plane + i], s.v[2 * s.plane + i]);
-    c.w = v3(s.v[3 * s.plane + i], s.v[4 * s.plane + i], s.v[5 * s.plane + i]);
+    c.v = v3_load(s.v, s.plane, 0, i);
+    c.w = v3_load(s.v, s.plane, 3, i);
     return c;
 }
 

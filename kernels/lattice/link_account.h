@@ -77,15 +77,10 @@ LAW void link_account_stage(struct lattice_effort e, struct link_cell c, vec3 a,
     struct lattice_ledger sum = lattice_ledger_of(ledger, plane, i);
     double alpha = (double)cell[6], mass = 1.0 / (double)cell[0], inertia = 1.0 / (double)cell[1];
     if (stage.is_nystrom) {
-        vec3 before_a = v3(last[i], last[plane + i], last[2 * plane + i]);
-        vec3 before_b = v3(last[3 * plane + i], last[4 * plane + i], last[5 * plane + i]);
+        vec3 before_a = v3_load(last, plane, 0, i), before_b = v3_load(last, plane, 3, i);
         c = lattice_speed_of(c, a, b, before_a, before_b, speed, stage.is_first);
-        last[i] = a.x;
-        last[plane + i] = a.y;
-        last[2 * plane + i] = a.z;
-        last[3 * plane + i] = b.x;
-        last[4 * plane + i] = b.y;
-        last[5 * plane + i] = b.z;
+        v3_store(last, plane, 0, i, a);
+        v3_store(last, plane, 3, i, b);
     }
     lattice_ledger_keep(ledger, plane, i,
         lattice_work_stage(sum, e, c, word, alpha, mass, inertia, (double)stage.sum_k));

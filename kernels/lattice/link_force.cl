@@ -54,25 +54,17 @@ LAW struct lattice_pull lattice_pull_of(int mixed, struct lattice_view s, size_t
 LAW void lattice_keep(
     __global preal *x, __global real *v, size_t plane, size_t i, struct link_cell c)
 {
-    x[i] = c.u.x;
-    x[plane + i] = c.u.y;
-    x[2 * plane + i] = c.u.z;
+    p3_store(x, plane, 0, i, c.u);
     if (WITH_TURN) {
         x[3 * plane + i] = c.q.w;
         x[4 * plane + i] = c.q.v.x;
         x[5 * plane + i] = c.q.v.y;
         x[6 * plane + i] = c.q.v.z;
     } else {
-        x[3 * plane + i] = c.theta.x;
-        x[4 * plane + i] = c.theta.y;
-        x[5 * plane + i] = c.theta.z;
+        p3_store(x, plane, 3, i, c.theta);
     }
-    v[i] = c.v.x;
-    v[plane + i] = c.v.y;
-    v[2 * plane + i] = c.v.z;
-    v[3 * plane + i] = c.w.x;
-    v[4 * plane + i] = c.w.y;
-    v[5 * plane + i] = c.w.z;
+    v3_store(v, plane, 0, i, c.v);
+    v3_store(v, plane, 3, i, c.w);
 }
 
 #if !WITH_RK
@@ -95,12 +87,12 @@ LAW struct lattice_sums lattice_sums_of(
     __global const preal *sum_x, __global const real *sum_v, size_t plane, size_t i, int is_first)
 {
     struct lattice_sums s, zero = lattice_sums_zero();
-    s.u = p3(sum_x[i], sum_x[plane + i], sum_x[2 * plane + i]);
-    s.turn = p3(sum_x[3 * plane + i], sum_x[4 * plane + i], sum_x[5 * plane + i]);
+    s.u = p3_load(sum_x, plane, 0, i);
+    s.turn = p3_load(sum_x, plane, 3, i);
     s.r = p3(0, 0, 0);
-    if (WITH_TURN) s.r = p3(sum_x[6 * plane + i], sum_x[7 * plane + i], sum_x[8 * plane + i]);
-    s.v = v3(sum_v[i], sum_v[plane + i], sum_v[2 * plane + i]);
-    s.w = v3(sum_v[3 * plane + i], sum_v[4 * plane + i], sum_v[5 * plane + i]);
+    if (WITH_TURN) s.r = p3_load(sum_x, plane, 6, i);
+    s.v = v3_load(sum_v, plane, 0, i);
+    s.w = v3_load(sum_v, plane, 3, i);
     s.u = p3_choose(is_first, zero.u, s.u);
     s.turn = p3_choose(is_first, zero.turn, s.turn);
     s.r = p3_choose(is_first, zero.r, s.r);
@@ -112,23 +104,11 @@ LAW struct lattice_sums lattice_sums_of(
 LAW void lattice_sums_keep(
     __global preal *sum_x, __global real *sum_v, size_t plane, size_t i, struct lattice_sums s)
 {
-    sum_x[i] = s.u.x;
-    sum_x[plane + i] = s.u.y;
-    sum_x[2 * plane + i] = s.u.z;
-    sum_x[3 * plane + i] = s.turn.x;
-    sum_x[4 * plane + i] = s.turn.y;
-    sum_x[5 * plane + i] = s.turn.z;
-    if (WITH_TURN) {
-        sum_x[6 * plane + i] = s.r.x;
-        sum_x[7 * plane + i] = s.r.y;
-        sum_x[8 * plane + i] = s.r.z;
-    }
-    sum_v[i] = s.v.x;
-    sum_v[plane + i] = s.v.y;
-    sum_v[2 * plane + i] = s.v.z;
-    sum_v[3 * plane + i] = s.w.x;
-    sum_v[4 * plane + i] = s.w.y;
-    sum_v[5 * plane + i] = s.w.z;
+    p3_store(sum_x, plane, 0, i, s.u);
+    p3_store(sum_x, plane, 3, i, s.turn);
+    if (WITH_TURN) p3_store(sum_x, plane, 6, i, s.r);
+    v3_store(sum_v, plane, 0, i, s.v);
+    v3_store(sum_v, plane, 3, i, s.w);
 }
 
 /* alpha: mass-proportional damping of the cell's kind [1/s]. */

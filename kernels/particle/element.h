@@ -42,6 +42,8 @@ typedef double4 preal4;
 #define VXYZ(v) v3((v).s0, (v).s1, (v).s2)
 #endif
 
+#define WITH_PERIODIC (WITH_PERIODIC_X || WITH_PERIODIC_Y || WITH_PERIODIC_Z)
+
 /* Difference of two coordinates at most one and a half periods apart, brought to the nearest image.
  * period 0: not periodic. */
 LAW preal nearest_image(preal d, preal period)

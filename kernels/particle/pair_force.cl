@@ -29,11 +29,7 @@
 #define LOC(row) loc[(row)*BATCH + l]
 
 /* Where the law's numbers come from. */
-#if WITH_MATERIALS
-#define TABLE_ROW (int)LOC(L_KIND)
-#else
-#define TABLE_ROW 0
-#endif
+#define TABLE_ROW (WITH_MATERIALS ? (int)LOC(L_KIND) : 0)
 #if WITH_SIZES
 #define PAIR_SIZES contact_pair_of(LOC(L_SIZE + 2), LOC(L_SIZE + 3), LOC(L_SIZE), LOC(L_SIZE + 1))
 #define PARAMETERS                                                                                 \
@@ -111,7 +107,7 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void pair_forc
 #if WITH_ENERGY
     __global double *restrict ledger,
 #endif
-#if WITH_PERIODIC_X || WITH_PERIODIC_Y || WITH_PERIODIC_Z
+#if WITH_PERIODIC
     preal period_x, preal period_y, preal period_z,
 #endif
 #if WITH_SIZES || WITH_MATERIALS
@@ -140,7 +136,7 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void pair_forc
     FOR_BATCH (l, n) {
         pvec3 D = ROW3_LOAD(p3, distance, 0, l);
         vec3 u = ROW3_LOAD(v3, loc, L_U, l), zero = v3(0, 0, 0), wi = zero, wj = zero;
-#if WITH_PERIODIC_X || WITH_PERIODIC_Y || WITH_PERIODIC_Z
+#if WITH_PERIODIC
         D = nearest_images(D, period_x, period_y, period_z);
 #endif
         if (WITH_ROTATION) wi = ROW3_LOAD(v3, loc, L_WI, l);

@@ -126,7 +126,7 @@ __kernel __attribute__((reqd_work_group_size(64, 1, 1))) void rows(int n_owned, 
     int n_level, __global const preal *position, __global const preal *reach,
     __global const long *gid, __global const preal *grid_real, __global const int *grid_int,
     __global const int *cell_begin, __global const int *member,
-#if WITH_PERIODIC_X || WITH_PERIODIC_Y || WITH_PERIODIC_Z
+#if WITH_PERIODIC
     preal period_x, preal period_y, preal period_z,
 #endif
     __global int *found, __global int *begin, __global int *row, __global long *row_gid)
@@ -139,7 +139,7 @@ __kernel __attribute__((reqd_work_group_size(64, 1, 1))) void rows(int n_owned, 
     s.element = e;
     s.n_owned = n_owned;
     s.period_x = s.period_y = s.period_z = 0;
-#if WITH_PERIODIC_X || WITH_PERIODIC_Y || WITH_PERIODIC_Z
+#if WITH_PERIODIC
     s.period_x = period_x;
     s.period_y = period_y;
     s.period_z = period_z;

@@ -9,7 +9,7 @@
 __kernel __attribute__((reqd_work_group_size(SELECT_GROUP, 1, 1))) void select_owner(int n,
     int rank, int n_node, int remove, __global preal *position, __global const int *node,
     __global const preal *cut,
-#if WITH_PERIODIC_X || WITH_PERIODIC_Y || WITH_PERIODIC_Z
+#if WITH_PERIODIC
     preal period_x, preal period_y, preal period_z,
 #endif
     __global const preal *domain, __global int *owner, __global int *stay, __global int *leave)
@@ -21,7 +21,7 @@ __kernel __attribute__((reqd_work_group_size(SELECT_GROUP, 1, 1))) void select_o
     x[0] = p.s0;
     x[1] = p.s1;
     x[2] = p.s2;
-#if WITH_PERIODIC_X || WITH_PERIODIC_Y || WITH_PERIODIC_Z
+#if WITH_PERIODIC
     const preal period[3] = {period_x, period_y, period_z};
     for (int a = 0; a < 3; a++) {
         if (period[a] <= 0) continue;
@@ -158,7 +158,7 @@ __kernel __attribute__((reqd_work_group_size(SELECT_GROUP, 1, 1))) void select_g
     int rank, int n_node, __global const preal *position, __global const preal *reach,
     __global const int *node, __global const preal *cut, __global const preal *domain, preal low_x,
     preal low_y, preal low_z, preal high_x, preal high_y, preal high_z, preal far_reach,
-#if WITH_PERIODIC_X || WITH_PERIODIC_Y || WITH_PERIODIC_Z
+#if WITH_PERIODIC
     preal period_x, preal period_y, preal period_z,
 #endif
     __global int *at)
@@ -166,7 +166,7 @@ __kernel __attribute__((reqd_work_group_size(SELECT_GROUP, 1, 1))) void select_g
     int e = get_global_id(0);
     if (e >= n) return;
     preal4 x = LOAD_POSITION(e);
-#if !(WITH_PERIODIC_X || WITH_PERIODIC_Y || WITH_PERIODIC_Z)
+#if !WITH_PERIODIC
     const preal period_x = 0, period_y = 0, period_z = 0;
 #endif
     pvec3 gap = p3(select_gap(x.s0, low_x, high_x, period_x),

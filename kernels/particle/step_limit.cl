@@ -102,7 +102,7 @@ __kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void step_limit(int 
     int n_group, int n_material, int kind, real dt, real share, __global const preal *position,
     __global const real *motion, __global const long *gid, __global const int *row_begin,
     __global const int *row,
-#if WITH_PERIODIC_X || WITH_PERIODIC_Y || WITH_PERIODIC_Z
+#if WITH_PERIODIC
     preal period_x, preal period_y, preal period_z,
 #endif
 #if WITH_WALLS
@@ -119,7 +119,7 @@ __kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void step_limit(int 
     int l = get_local_id(0), g = get_group_id(0);
     real least = LIMIT_NONE;
     long who = -1;
-#if !(WITH_PERIODIC_X || WITH_PERIODIC_Y || WITH_PERIODIC_Z)
+#if !WITH_PERIODIC
     const preal period_x = 0, period_y = 0, period_z = 0;
 #endif
     for (int e = g * GROUP + l; e < n_owned && g < n_group; e += n_group * GROUP) {

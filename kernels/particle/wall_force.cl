@@ -31,11 +31,7 @@
 #define LOC(row) loc[(row)*BATCH + l]
 #define PLACE(row) place[(row)*BATCH + l]
 
-#if WITH_TABLE
-#define TABLE_ROW (int)LOC(L_KIND)
-#else
-#define TABLE_ROW 0
-#endif
+#define TABLE_ROW (WITH_TABLE ? (int)LOC(L_KIND) : 0)
 #if WITH_SIZES
 #define PARAMETERS                                                                                 \
     contact_parameters_of(material_load(table + MATERIAL_WIDTH * TABLE_ROW),                       \

@@ -1,6 +1,8 @@
-"""What the checks of the cases share: time series and record of a run, and a verdict that says each number with its bound.
+"""What the checks of the cases share: time series and record of a run, and a verdict that says each
+number with its bound.
 
-A check is called with the folder of results, prints one line per number, and exits with 1 if one of them is out of its bounds."""
+A check is called with the folder of results, prints one line per number, and exits with 1 if one of
+them is out of its bounds."""
 import csv
 import json
 import pathlib
@@ -63,7 +65,8 @@ class Verdict:
         bound = relative * abs(right) + absolute
         self.say(
             abs(value - right) <= bound,
-            f"{name}: {value:.9g}, expected {right:.9g} +- {bound:.3g} (off by {value - right:.3g})",
+            f"{name}: {value:.9g}, expected {right:.9g} +- {bound:.3g} "
+            f"(off by {value - right:.3g})",
         )
 
     def between(self, name, value, low, high):

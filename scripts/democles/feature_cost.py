@@ -1,7 +1,9 @@
-"""What each feature of the lattice costs that a scene asks for: time per cell and step, and device memory per cell, each on its own.
+"""What each feature of the lattice costs that a scene asks for: time per cell and step, and device
+memory per cell, each on its own.
 
-Runs a block of N x N x N cells, bare and with one feature more, round robin, and takes each one's best round: other work on the machine slows,
-nothing makes faster. Writes out/feature_cost.csv and prints it as a table for a README.
+Runs a block of N x N x N cells, bare and with one feature more, round robin, and takes each one's
+best round: other work on the machine slows, nothing makes faster. Writes out/feature_cost.csv and
+prints it as a table for a README.
 
     scripts/feature_cost.py                    60^3 cells, one rank
     scripts/feature_cost.py --cells 100 --steps 20 --rounds 5 --precision single"""
@@ -18,7 +20,8 @@ OUT = places.OUT / "feature_cost"
 
 
 def bare(cells):
-    """A free block that a small part of it shakes: leapfrog, nu = 0, small rotations, no damping."""
+    """A free block that a small part of it shakes: leapfrog, nu = 0, small rotations,
+    no damping."""
     edge = 0.01
     return {
         "title": "features",

@@ -1,4 +1,5 @@
-"""What the tools and checks share: frames of a run as arrays with units, and the resolved scene as numbers."""
+"""What the tools and checks share: frames of a run as arrays with units,
+and the resolved scene as numbers."""
 import contextlib
 import functools
 import os
@@ -18,7 +19,8 @@ def paths(folder):
 
 
 def scene(folder):
-    """The resolved scene; numbers as YAML 1.1 misreads them (1e-05) are still text: see `number`."""
+    """The resolved scene; numbers as YAML 1.1 misreads them (1e-05) are still text:
+    see `number`."""
     return yaml.safe_load((pathlib.Path(folder) / "resolved.yaml").read_text())
 
 
@@ -54,8 +56,9 @@ def _look_at_all(path):
 
 @functools.lru_cache(maxsize=None)
 def _survives(path, changed):
-    """Whether HDF5 reads the file to its end, tried in a child process, since HDF5 1.10 crashes on some
-    damaged files; changed: when, so that a file is looked at once. Returns the signal that ended it, or 0.
+    """Whether HDF5 reads the file to its end, tried in a child process, since HDF5 1.10 crashes on
+    some damaged files; changed: when, so that a file is looked at once. Returns the signal that
+    ended it, or 0.
     """
     sys.stdout.flush()
     sys.stderr.flush()
@@ -93,8 +96,9 @@ HEXAHEDRON = 12  # VTK's number
 
 
 class Frame:
-    """One frame. `points` [n][3] [m]: centres of the elements, or of the cells of a solid; `time` [s], `names` of the fields. Of a solid also
-    `corners` and `displacement` of the corners [n][8][3] [m], the former at the start; else `corners` is None.
+    """One frame. `points` [n][3] [m]: centres of the elements, or of the cells of a solid; `time`
+    [s], `names` of the fields. Of a solid also `corners` and `displacement` of the corners
+    [n][8][3] [m], the former at the start; else `corners` is None.
     """
 
     def __init__(self, path):

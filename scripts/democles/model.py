@@ -1,20 +1,23 @@
-"""Predicts the time of a step on a described machine from measured runs: strong scaling (the same elements on more devices) and weak scaling
-(as many on each). What it assumes is printed with the result.
+"""Predicts the time of a step on a described machine from measured runs: strong scaling (the same
+elements on more devices) and weak scaling (as many on each). What it assumes is printed with the
+result.
 
     scripts/scaling.py l_box --profile --ranks 1,2,8,64
-    scripts/model.py out/scaling/l_box/geometric_* --machine cluster.yaml --ranks 1,2,4,8,16,32,64,128
+    scripts/model.py out/scaling/l_box/geometric_* --machine cluster.yaml --ranks 1,2,4,8,16,32,64
     scripts/model.py --check out/scaling/l_box/geometric_1 out/scaling/l_box/geometric_2
 
-A run is a folder of results or its run.json. That on fewest ranks gives the rates (best with --profile); those on more ranks give imbalance, bytes
-and messages at their number of ranks. A machine is a YAML file with any of these keys, or the options of the same names:
+A run is a folder of results or its run.json. That on fewest ranks gives the rates (best with
+--profile); those on more ranks give imbalance, bytes and messages at their number of ranks. A
+machine is a YAML file with any of these keys, or the options of the same names:
 
-    bandwidth: 10                    # of a device's memory, relative to that of a device of the measured runs
+    bandwidth: 10                    # of a device's memory, relative to that of the measured runs
     launch_s: 8e-6                   # of one kernel; default: as measured
     network_bytes_per_s: 1.2e10      # of one rank
     network_latency_s: 2e-6          # of one message
-    link_bytes_per_s: 2e10           # between a device and its host; default: no cost, they share memory
+    link_bytes_per_s: 2e10           # between device and host; default: no cost, they share memory
 
---check takes rates from the first run and predicts the second, and itself, on the machine that measured them."""
+--check takes rates from the first run and predicts the second, and itself, on the machine that
+measured them."""
 import argparse
 import dataclasses
 import math
@@ -63,7 +66,9 @@ class Traffic:
 
 
 def rates_of(record):
-    """From a run, best on one rank. Kernels that do not run in each step belong to the regroup. Without kernel times launches are part of them."""
+    """From a run, best on one rank.
+    Kernels that do not run in each step belong to the regroup. Without kernel times launches are
+    part of them."""
     compute, mine = record.per_step("compute"), record.elements / record.ranks
     plain = record.raw["plain_steps"]
     launches = plain["launches"] / max(plain["steps"], 1) / record.ranks
@@ -81,7 +86,8 @@ def rates_of(record):
 
 
 def faces(ranks):
-    """Mean number of a subdomain's faces that have a neighbour: of a cube cut into p x p x p, p = ranks^(1/3), 6 (1 - 1/p)."""
+    """Mean number of a subdomain's faces that have a neighbour:
+    of a cube cut into p x p x p, p = ranks^(1/3), 6 (1 - 1/p)."""
     return 6 * (1 - ranks ** (-1 / 3))
 
 
@@ -105,7 +111,8 @@ def measured_traffic(record):
 
 
 def traffic_at(ranks, per_rank, records, rates):
-    """Measured, where a run on so many ranks had as many elements on each; else by the surface of a cube, from the run that is next in ranks."""
+    """Measured, where a run on so many ranks had as many elements on each; else by the surface of a
+    cube, from the run that is next in ranks."""
     if ranks == 1:
         return Traffic(0, 0, 0, 0, 1, rates.launches, "none")
     many = [r for r in records if r.ranks > 1]
@@ -114,7 +121,8 @@ def traffic_at(ranks, per_rank, records, rates):
             return measured_traffic(r)
     if not many:
         raise SystemExit(
-            "model: more than one rank can be predicted only from a run on more than one, which tells what is sent"
+            "model: more than one rank can be predicted only from a run on more than one, which "
+            "tells what is sent"
         )
     near = min(many, key=lambda r: abs(math.log(r.ranks / ranks)))
     known = measured_traffic(near)
@@ -131,7 +139,8 @@ def traffic_at(ranks, per_rank, records, rates):
 
 
 def step_time(per_rank, traffic, rates, machine):
-    """Parts of a step [s] on the rank with most work: launches, kernels, what of the exchange is not hidden, regroup."""
+    """Parts of a step [s] on the rank with most work: launches, kernels,
+    what of the exchange is not hidden, regroup."""
     launch = machine.launch_s if machine.launch_s is not None else rates.launch_s
     kernels = rates.kernel_s * per_rank * (1 + traffic.imbalance) / machine.bandwidth
     link = 2 * traffic.bytes / machine.link_bytes_per_s if machine.link_bytes_per_s else 0
@@ -157,15 +166,23 @@ def assumptions(rates, machine, records):
         "" if records[0].of("kernels") else ", without kernel times: launches are in the kernels"
     )
     return [
-        f"Rates: {rates.kernel_s * 1e9:.3g} ns of kernels and {rates.regroup_s * 1e9:.3g} ns of regroup per element and step, "
-        f"{rates.launches:.3g} launches per step, {rates.launch_s * 1e6:.3g} us each besides the kernel; "
+        f"Rates: {rates.kernel_s * 1e9:.3g} ns of kernels and {rates.regroup_s * 1e9:.3g} ns "
+        "of regroup per element and step, "
+        f"{rates.launches:.3g} launches per step, "
+        f"{rates.launch_s * 1e6:.3g} us each besides the kernel; "
         f"from {device}, {first} rank{'s' if first > 1 else ''}{without}.",
-        f"Machine: memory {machine.bandwidth:.3g} times as fast, {launch * 1e6:.3g} us per launch, network {machine.network_bytes_per_s:.3g} B/s "
-        f"and {machine.network_latency_s * 1e6:.3g} us per message for each rank, device to host {link}.",
-        "Assumed: kernels and regroup take time in proportion to elements and to memory; the slowest rank, 1 + U times the mean, sets the pace;",
-        "messages leave one after the other and hide under the kernels of the interior, the share of elements that nobody else needs;",
-        "where no run has measured it, what is sent goes with the surface of a cubic subdomain, neighbours with its faces, edges, corners, and U",
-        "stays that of the run next in ranks. Not in it: collectives, output, a network that slows when all send.",
+        f"Machine: memory {machine.bandwidth:.3g} times as fast, {launch * 1e6:.3g} us per "
+        f"launch, network {machine.network_bytes_per_s:.3g} B/s "
+        f"and {machine.network_latency_s * 1e6:.3g} us per message for each rank, device to host "
+        f"{link}.",
+        "Assumed: kernels and regroup take time in proportion to elements and to memory; the "
+        "slowest rank, 1 + U times the mean, sets the pace;",
+        "messages leave one after the other and hide under the kernels of the interior, the share "
+        "of elements that nobody else needs;",
+        "where no run has measured it, what is sent goes with the surface of a cubic subdomain, "
+        "neighbours with its faces, edges, corners, and U",
+        "stays that of the run next in ranks. Not in it: collectives, output, a network that "
+        "slows when all send.",
     ]
 
 

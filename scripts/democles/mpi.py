@@ -1,5 +1,5 @@
-"""How several ranks are started: the one place that knows the arguments and the environment of Open MPI and of MPICH. Ranks may outnumber the cores
-here, and may run as root, as in a container."""
+"""How several ranks are started: the one place that knows the arguments and the environment of Open
+MPI and of MPICH. Ranks may outnumber the cores here, and may run as root, as in a container."""
 import functools
 import os
 import subprocess

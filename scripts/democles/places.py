@@ -1,4 +1,5 @@
-"""Where the tools find the program and the cases, and where they put results: in a checkout, and as installed."""
+"""Where the tools find the program and the cases, and where they put results:
+in a checkout, and as installed."""
 import pathlib
 import shutil
 
@@ -9,6 +10,7 @@ OUT = ROOT / "out" if IS_CHECKOUT else pathlib.Path("out")
 
 
 def program():
-    """The program of this checkout, the one installed with the tools, or the one that the shell finds."""
+    """The program of this checkout, the one installed with the tools,
+    or the one that the shell finds."""
     own = ROOT / "build" / "democles" if IS_CHECKOUT else ROOT.parents[1] / "bin" / "democles"
     return str(own) if own.is_file() else shutil.which("democles") or str(own)

@@ -1,4 +1,5 @@
-"""Plots of what a run measured: one PNG per time series, DIR/NAME.csv -> DIR/NAME.png. Columns of one unit share an axis.
+"""Plots of what a run measured: one PNG per time series, DIR/NAME.csv -> DIR/NAME.png.
+Columns of one unit share an axis.
 
     scripts/plot.py DIR [NAME...]            all series, or those named"""
 import argparse
@@ -18,7 +19,8 @@ DASHES = ("-", "--", "-.", ":")
 
 
 def read(path):
-    """Titles [(name, unit)] and values [n_row][n_column]. A last line that a crash has cut short is left out."""
+    """Titles [(name, unit)] and values [n_row][n_column].
+    A last line that a crash has cut short is left out."""
     with open(path, newline="") as file:
         rows = list(csv.reader(file))
     if not rows or not rows[0] or not rows[0][0].startswith("time ["):
@@ -52,7 +54,8 @@ def draw(path, titles, values):
     for axis, unit in zip(axes[:, 0], units):
         columns = [k for k in range(1, len(titles)) if titles[k][1] == unit]
         names = [titles[k][0] for k in columns]
-        # ten colours that are easily told apart; more lines take theirs from a scale and differ by dashes
+        # ten colours that are easily told apart;
+        # more lines take theirs from a scale and differ by dashes
         colours = (
             plt.get_cmap("tab10").colors
             if len(columns) <= 10

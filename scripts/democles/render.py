@@ -1,7 +1,8 @@
-"""Pictures and animations of a run: particles as spheres coloured by a field, translucent walls; a solid with its displacements magnified.
+"""Pictures and animations of a run: particles as spheres coloured by a field, translucent walls; a
+solid with its displacements magnified.
 
-    scripts/render.py DIR                    DIR/overview.png: up to four moments of the run side by side
-    scripts/render.py DIR --frame last       DIR/frame_000123.png: one frame, by number, `first` or `last`
+    scripts/render.py DIR                    DIR/overview.png: up to four moments, side by side
+    scripts/render.py DIR --frame last       DIR/frame_000123.png: one, by number, `first`, `last`
     scripts/render.py DIR --film             DIR/film.mp4: all frames
 
 Works without a display (it starts one, Xvfb)."""
@@ -57,7 +58,8 @@ def arguments():
         "--warp",
         metavar="FACTOR",
         type=float,
-        help="factor by which the displacements of a solid are magnified (default: to a twelfth of its size, if they are smaller)",
+        help="factor by which the displacements of a solid are magnified (default: to a twelfth "
+        "of its size, if they are smaller)",
     )
     parser.add_argument(
         "--view",
@@ -76,7 +78,8 @@ def arguments():
     parser.add_argument(
         "--fps",
         type=numbers(1, None, float, lambda v: v[0] > 0, "a number above 0"),
-        help="frames per second of the animation (default: such that it lasts about 8 s, 5 to 25 per second)",
+        help="frames per second of the animation (default: such that it lasts about 8 s, 5 to 25 "
+        "per second)",
     )
     parser.add_argument(
         "--plain", action="store_true", help="leaves out title, times, colour bar and scale"

@@ -27,7 +27,8 @@ class Colours:
         )
 
     def ends(self, values, is_integer):
-        """Whole numbers get a colour each where they are few; else the fastest half per cent share the last colour."""
+        """Whole numbers get a colour each where they are few;
+        else the fastest half per cent share the last colour."""
         if not len(values):
             return 0.0, 1.0
         low, high = float(values.min()), float(values.max())
@@ -53,8 +54,9 @@ class Colours:
         )
 
     def prefix(self):
-        """(1e6, "M") for millions of pascals, (1e-3, "m") for small speeds: the prefix that leaves the largest value between 1 and 1000.
-        Kilograms have one already; numbers without a unit take none."""
+        """(1e6, "M") for millions of pascals, (1e-3, "m") for small speeds: the prefix that leaves
+        the largest value between 1 and 1000. Kilograms have one already; numbers without a unit
+        take none."""
         large = max(abs(self.low), abs(self.high))
         if not self.unit or self.unit.startswith("kg") or 0.1 <= large < 1000:
             return 1, ""

@@ -35,7 +35,8 @@ def words(scene, field):
 
 
 def magnification(samples):
-    """Round factor that makes the largest displacement of a solid a twelfth of its size; 1 for what moves farther by itself."""
+    """Round factor that makes the largest displacement of a solid a twelfth of its size;
+    1 for what moves farther by itself."""
     solids = [frame for frame in samples if frame.corners is not None]
     largest = max(
         (numpy.linalg.norm(frame.displacement, axis=2).max() for frame in solids), default=0
@@ -50,7 +51,8 @@ def magnification(samples):
 
 
 def extent(samples, walls, warp):
-    """Lowest and highest corner of all that has an end: elements of the sampled frames, and walls."""
+    """Lowest and highest corner of all that has an end: elements of the sampled frames,
+    and walls."""
     low, high = numpy.full(3, numpy.inf), numpy.full(3, -numpy.inf)
     for frame in samples:
         if frame.corners is not None:
@@ -89,7 +91,8 @@ def time_text(time, end):
 
 
 class Layout:
-    """A page in pixels: title above, n panels, colour bar and scale below. All panels have the same scale. plain: the panels alone."""
+    """A page in pixels: title above, n panels, colour bar and scale below.
+    All panels have the same scale. plain: the panels alone."""
 
     def __init__(self, size, n, title, colours, axes, low, high, plain):
         width, height = size
@@ -297,7 +300,8 @@ def write_film(options, paths, size):
 
 
 def with_elements(paths):
-    """Without the frames at the end in which hardly any elements are left (a twentieth of those of the first frame)."""
+    """Without the frames at the end in which hardly any elements are left
+    (a twentieth of those of the first frame)."""
     n, least = len(paths), len(frames.Frame(paths[0]).points) / 20
     while n > 1 and len(frames.Frame(paths[n - 1]).points) < least:
         n -= 1

@@ -1,4 +1,5 @@
-"""One view of elements or a solid, and walls by VTK, without any text: parallel projection, so that all panels and frames have one scale."""
+"""One view of elements or a solid, and walls by VTK, without any text: parallel projection, so that
+all panels and frames have one scale."""
 import numpy
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401 (chooses OpenGL)
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
@@ -24,8 +25,9 @@ def corners_of(low, high):
 
 
 def view_axes(low, high, gravity, towards=None):
-    """Right, up and back (to the eye) of the picture, unit vectors. Up is against gravity; the eye looks along the thinnest extent, a little from
-    the side and from above, so that it is seen to be a body."""
+    """Right, up and back (to the eye) of the picture, unit vectors.
+    Up is against gravity; the eye looks along the thinnest extent, a little from the side and from
+    above, so that it is seen to be a body."""
     gravity = numpy.array([float(g) for g in gravity or (0, 0, 0)])
     up = (
         -gravity / numpy.linalg.norm(gravity)
@@ -96,7 +98,9 @@ def faces_of(n):
 
 
 class View:
-    """draw() gives [height][width][3] bytes. `sharpness` times as many pixels are drawn and averaged. warp: factor on a solid's displacements."""
+    """draw() gives [height][width][3] bytes.
+    `sharpness` times as many pixels are drawn and averaged. warp: factor on a solid's
+    displacements."""
 
     def __init__(self, panel, sharpness, axes, box, pixels_per_metre, walls, colours, warp=1.0):
         self.panel, self.sharpness, self.warp = panel, sharpness, warp

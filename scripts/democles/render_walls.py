@@ -1,4 +1,5 @@
-"""Walls of a resolved scene as surfaces to draw: plane, rectangle, box, cylinder, STL, at their pose of a time, while they are there."""
+"""Walls of a resolved scene as surfaces to draw: plane, rectangle, box, cylinder, STL, at their
+pose of a time, while they are there."""
 import math
 
 import numpy
@@ -34,7 +35,8 @@ def polygons(points, faces):
 
 
 def rectangle_axes(normal):
-    """In-plane axes as src/shape/walls.h has them: leave out the coordinate axis nearest to the normal, project the first of the other two."""
+    """In-plane axes as src/shape/walls.h has them: leave out the coordinate axis nearest to the
+    normal, project the first of the other two."""
     size = numpy.abs(normal)
     left_out = max((2, 1, 0), key=lambda a: size[a])  # z before y before x where equal
     first, second = [a for a in range(3) if a != left_out]
@@ -44,7 +46,8 @@ def rectangle_axes(normal):
 
 
 def plane(surface, low, high):
-    """The part of the plane within the box low..high, which is what a picture can show of it: the big square, cut at the six sides."""
+    """The part of the plane within the box low..high, which is what a picture can show of it: the
+    big square, cut at the six sides."""
     point, normal = vector(surface["point"]), unit(vector(surface["normal"]))
     u, v = rectangle_axes(normal)
     middle, reach = (low + high) / 2, numpy.linalg.norm(high - low)
@@ -112,7 +115,8 @@ def stl(surface):
 
 
 def surface_of(wall, low, high):
-    """The wall at its place of time 0, or None where nothing of it can be drawn. low, high: the box to which a plane is cut."""
+    """The wall at its place of time 0, or None where nothing of it can be drawn.
+    low, high: the box to which a plane is cut."""
     surface = wall["surface"]
     if "plane" in surface:
         return plane(surface["plane"], low, high)
@@ -138,7 +142,8 @@ def is_there(wall, time):
 
 
 def pose(wall, time):
-    """4x4 matrix from the wall's frame to its place at a time: as place_at of src/shape/walls_pose.c."""
+    """4x4 matrix from the wall's frame to its place at a time:
+    as place_at of src/shape/walls_pose.c."""
     motion = wall.get("motion") or {}
     shift = time * vector(motion.get("velocity", (0, 0, 0)))
     swing, turn = motion.get("oscillation"), motion.get("rotation")

@@ -1,11 +1,13 @@
-"""Scaling of a scene over numbers of ranks and partitioners: time, speed-up, efficiency, where the time goes, load imbalance U = max/mean - 1, edge
-cut, communication. Where ranks outnumber the machine's cores, times mean nothing and are left out; the rest holds.
+"""Scaling of a scene over numbers of ranks and partitioners: time, speed-up, efficiency, where the
+time goes, load imbalance U = max/mean - 1, edge cut, communication. Where ranks outnumber the
+machine's cores, times mean nothing and are left out; the rest holds.
 
     scripts/scaling.py l_box --ranks 1,2,4,8,16 --steps 500
     scripts/scaling.py my/scene.yaml --methods geometric --ranks 1,2,128 --set output.every=0
     scripts/scaling.py out/l_box --steps 1000                  # from the latest frame of a run
 
-Writes scaling.md, scaling.csv and scaling.png into out/scaling/NAME, beside the runs. Exit code 1 if a run fails or if digests differ."""
+Writes scaling.md, scaling.csv and scaling.png into out/scaling/NAME, beside the runs. Exit code 1
+if a run fails or if digests differ."""
 import argparse
 import pathlib
 import sys
@@ -68,7 +70,8 @@ def arguments():
         "--rounds",
         type=int,
         default=1,
-        help="repetitions of the timed runs, round robin; the fastest counts (default: %(default)s)",
+        help="repetitions of the timed runs, round robin; "
+        "the fastest counts (default: %(default)s)",
     )
     parser.add_argument(
         "--profile",
@@ -177,15 +180,18 @@ def notes(options, found, base, has_reference):
         f"{options.cores} core{'s' if options.cores > 1 else ''}",
     )
     lines = [
-        f"{first.raw['title']}: {first.elements} elements, {first.raw['interactions']} interactions, {options.steps} steps{since}, "
+        f"{first.raw['title']}: {first.elements} elements, {first.raw['interactions']} "
+        f"interactions, {options.steps} steps{since}, "
         f"{first.raw['precision']}; {device['name']}, {device['platform_version']}; {cores}.",
-        "Time is that of all steps, without set-up and output. Shares are means over ranks; exchange is without wait.",
+        "Time is that of all steps, without set-up and output. Shares are means over ranks; "
+        "exchange is without wait.",
     ]
     if base and base.ranks > 1:
         lines.append(f"Speed-up is relative to {base.ranks} ranks, which count as {base.ranks}.")
     if max(options.ranks) > options.cores:
         lines.append(
-            "More ranks than cores share them: their times would say nothing and are not given. The rest holds."
+            "More ranks than cores share them: their times would say nothing and are not given. "
+            "The rest holds."
         )
     if has_reference:
         lines.append(f"Reference: {study.REFERENCE_SOURCE}.")

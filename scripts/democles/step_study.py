@@ -1,8 +1,9 @@
 """step_study.py CASE: at which time step a case's outflow curve stops changing.
 
-Runs cases/CASE once per time step, without frames in between, and some more times at one step with other random starts: where two steps differ by no
-more than two starts do, the step no longer matters. Writes out/CASE_steps/: step_study.csv (a line per run), curves.csv (the curves, some 200 lines)
-and step_study.png. Runs that are there already are not repeated.
+Runs cases/CASE once per time step, without frames in between, and some more times at one step with
+other random starts: where two steps differ by no more than two starts do, the step no longer
+matters. Writes out/CASE_steps/: step_study.csv (a line per run), curves.csv (the curves, some 200
+lines) and step_study.png. Runs that are there already are not repeated.
 
     scripts/step_study.py v_funnel
     scripts/step_study.py v_funnel --steps 4e-5,2e-5 --ranks 1 --seeds 2

@@ -1,4 +1,5 @@
-"""Shared by the studies of runs on many ranks: starting a run, reading its record, writing tables."""
+"""Shared by the studies of runs on many ranks: starting a run, reading its record,
+writing tables."""
 import csv
 import json
 import os
@@ -15,8 +16,12 @@ PARTS = (
     "regroup",
 )  # of the loop's time; they do not overlap here: exchange is without wait
 
-# Published speed-up and efficiency [%] of a reference solver, on the scenes that cases/ repeats (base: one processor).
-REFERENCE_SOURCE = "report on VEDO and Iris (National Taiwan University), tables of cases A and B, geometric and graph partitioning"
+# Published speed-up and efficiency [%] of a reference solver,
+# on the scenes that cases/ repeats (base: one processor).
+REFERENCE_SOURCE = (
+    "report on VEDO and Iris (National Taiwan University), tables of cases A and B, "
+    "geometric and graph partitioning"
+)
 REFERENCE = {
     "v_funnel": {
         "geometric": {4: (3.76, 94.09), 8: (6.59, 82.33), 16: (9.16, 57.24)},
@@ -40,7 +45,8 @@ def numbers(text):
 
 
 def run(program, scene, folder, ranks, *args):
-    """Runs, replacing what is in the folder; a scene that is a folder of results is resumed from its latest frame. Returns exit code and stderr."""
+    """Runs, replacing what is in the folder; a scene that is a folder of results is resumed from
+    its latest frame. Returns exit code and stderr."""
     # a core for each rank: else one rank alone would have them all, and two could not be faster
     env = {"POCL_MAX_PTHREAD_COUNT": "1", "POCL_MAX_COMPUTE_UNITS": "1", **mpi.environment()}
     command = [str(program), "run", str(scene), "-o", str(folder), "--force"]
@@ -122,7 +128,8 @@ class Record:
 
 
 def write_table(path, titles, rows, notes=()):
-    """path.md and path.csv; prints the former. Cells: text, numbers, or None for what is not known."""
+    """path.md and path.csv; prints the former. Cells: text, numbers,
+    or None for what is not known."""
 
     def shown(cell):
         return (

@@ -27,7 +27,7 @@ static void print_elements(const struct scene *scene, const struct elements_host
             n++;
             smallest = fmin(smallest, r);
             largest = fmax(largest, r);
-            mass += scene->material[group->material].density * (4.0 / 3.0) * M_PI * r * r * r;
+            mass += scene_mass(scene, group->material, r);
         }
         printf("    %s: %lld of %s, ", group->name, (long long)n,
             scene->material[group->material].name);

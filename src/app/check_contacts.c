@@ -31,11 +31,6 @@ static bool is_wall(const struct scene *scene, int material)
     return false;
 }
 
-static double mass(const struct scene *scene, int material, double radius)
-{
-    return scene->material[material].density * (4.0 / 3.0) * M_PI * radius * radius * radius;
-}
-
 /* 1/E* = (1 - nu_a^2)/E_a + (1 - nu_b^2)/E_b [Pa] */
 static double young_star(const struct material *a, const struct material *b)
 {
@@ -104,7 +99,7 @@ void check_contacts(const struct scene *scene, const struct elements_host *eleme
         printf("    %s and %s\n", material[a].name, material[b].name);
         struct sizes of[2] = {sizes_of(elements, a), sizes_of(elements, b)};
         double r[2] = {of[0].smallest, of[1].smallest},
-               m[2] = {mass(scene, a, r[0]), mass(scene, b, r[1])};
+               m[2] = {scene_mass(scene, a, r[0]), scene_mass(scene, b, r[1])};
         bool both = isfinite(r[0]) && isfinite(r[1]),
              wall[2] = {isfinite(r[0]) && is_wall(scene, b), isfinite(r[1]) && is_wall(scene, a)};
         bool has_force = c->normal_law == NORMAL_HERTZ || c->stiffness > 0;

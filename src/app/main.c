@@ -19,7 +19,6 @@ static int run(struct comm *comm, struct options *options)
 {
     struct log *log = log_create(comm, options->run.quiet);
     bool goes_on = options->command == OPTIONS_RESUME;
-    log_print(log, LOG_FIRST_LINE "%s (%s)", DEMOCLES_VERSION, DEMOCLES_GIT);
     struct resume *from = goes_on ? resume_open(comm, log, options->operand) : NULL;
     struct scene *scene =
         goes_on ? resume_scene(comm, from, options->set, options->n_set)

@@ -9,6 +9,7 @@
 #include "base/duration.h"
 #include "comm/fail.h"
 #include "base/nearest.h"
+#include "scene/scene_keys.h"
 #include "version.h"
 
 static const struct command {
@@ -144,16 +145,23 @@ static int64_t whole_number(
 
 static void store_precision(struct options *o, const char *value)
 {
-    static const char *const name[] = {"double", "mixed", "single"};
+    char *word[3];
+    bool is_word = false;
     for (int k = 0; k < 3; k++) {
-        if (strcmp(value, name[k]) != 0) continue;
+        word[k] = scene_key_word("precision", PRECISION_DOUBLE + k);
+        is_word |= strcmp(value, word[k]) == 0;
+    }
+    const char *near = nearest_name(value, (const char *const *)word, 3);
+    if (is_word) {
         free(o->precision);
         o->precision = fail_format("precision=%s", value);
-        return;
+    } else if (near) {
+        o->error = fail_format("--precision '%s': did you mean '%s'?", value, near);
+    } else {
+        o->error = fail_format(
+            "--precision '%s': expected %s, %s or %s", value, word[0], word[1], word[2]);
     }
-    const char *near = nearest_name(value, name, 3);
-    if (near) o->error = fail_format("--precision '%s': did you mean '%s'?", value, near);
-    else o->error = fail_format("--precision '%s': expected double, mixed or single", value);
+    for (int k = 0; k < 3; k++) free(word[k]);
 }
 
 static void store(struct options *o, int option, const char *value)

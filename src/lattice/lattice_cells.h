@@ -56,8 +56,8 @@ struct lattice_cells {
     /* [n] velocity at time 0 [m/s]: 0 of a fixed DOF, as prescribed of a prescribed one; NULL: all
      * zero */
     double (*v)[3];
-    double (*w)[3];     /* [n] likewise, angular [rad/s]; NULL together with v */
-    int64_t *n_of_body; /* [scene.n_body] cells of each */
+    double (*w)[3];            /* [n] likewise, angular [rad/s]; NULL together with v */
+    int64_t *n_of_body;        /* [scene.n_body] cells of each */
     struct lattice_span *span; /* [scene.n_body] */
     struct lattice_loads *loads;
 };

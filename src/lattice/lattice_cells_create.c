@@ -44,18 +44,13 @@ static int kind_of(struct lattice_cells *cells, int material, int grid)
     return cells->n_kind++;
 }
 
-static void *grow(void *old, size_t n, size_t bytes)
-{
-    return fail_realloc(old, n * bytes);
-}
-
 static void append(struct lattice_cells *cells, const struct scene *scene, int grid,
     const struct lattice_list *list)
 {
     size_t n = (size_t)cells->n + list->n;
-    cells->at = grow(cells->at, n, sizeof *cells->at);
-    cells->kind_of = grow(cells->kind_of, n, sizeof *cells->kind_of);
-    cells->body = grow(cells->body, n, sizeof *cells->body);
+    cells->at = fail_realloc(cells->at, n * sizeof *cells->at);
+    cells->kind_of = fail_realloc(cells->kind_of, n * sizeof *cells->kind_of);
+    cells->body = fail_realloc(cells->body, n * sizeof *cells->body);
     /* of each body, 0: not yet known */
     int *kind = fail_alloc((size_t)scene->n_body * sizeof *kind);
     for (size_t k = 0; k < list->n; k++, cells->n++) {
@@ -80,7 +75,7 @@ static void check_counts(const struct scene *scene, const struct lattice_cells *
         lattice_fault(scene, errors, body->line, body->column, "bodies[%d]: '%s' has no cell: %s",
             b, body->name,
             cut[b].span.n > 0 ? "later bodies have taken them all"
-                         : "its shape contains no cell centre");
+                              : "its shape contains no cell centre");
     }
     if (cells->n_kind > UINT8_MAX)
         scene_errors_add(

@@ -1,4 +1,5 @@
-/* What the files that make cells share. Private to lattice_{cells_create,cracks,cut,fit,floating,rows}.c. */
+/* What the files that make cells share. Private to
+ * lattice_{cells_create,cracks,cut,fit,floating,rows}.c. */
 #ifndef DEMOCLES_LATTICE_PARTS_H
 #define DEMOCLES_LATTICE_PARTS_H
 
@@ -53,8 +54,8 @@ void lattice_loads_create(
 void lattice_loads_free(struct lattice_loads *loads);
 
 /* Before a relaxation: a message for each part of the joined cells that is not held and whose loads
- * at the end do not balance. Parts that are free and balanced begin at rest: nothing but the damping
- * of masses would end their flight. */
+ * at the end do not balance. Parts that are free and balanced begin at rest: nothing but the
+ * damping of masses would end their flight. */
 void lattice_floating_settle(
     const struct scene *scene, struct lattice_cells *cells, struct scene_errors *errors);
 

@@ -6,7 +6,6 @@
 
 #include "lattice_fields.h"
 #include "kernels/lattice/lattice_words.h"
-#include "results/digest.h"
 #include "comm/fail.h"
 #include "results/h5_check.h"
 #include "run/resume.h"
@@ -63,22 +62,17 @@ double *lattice_restore_totals(const struct sim *s)
     return (double *)t;
 }
 
-static uint64_t add(uint64_t sum, enum column_type type, const void *data, int64_t n)
-{
-    return digest_mix((sum ^ h5_check_sum(type, data, n, 0)) + DIGEST_G);
-}
-
 int64_t lattice_restore_inputs(const struct sim *s)
 {
     const struct lattice_cells *c = s->lattice->cells;
     int64_t inputs;
-    uint64_t sum = add((uint64_t)c->n, COLUMN_I32, c->at, 3 * c->n);
-    sum = add(sum, COLUMN_U8, c->kind_of, c->n);
-    sum = add(sum, COLUMN_U8, c->bits, 2 * c->n);
-    sum = add(sum, COLUMN_I32, c->row, c->n);
+    uint64_t sum = h5_check_add((uint64_t)c->n, COLUMN_I32, c->at, 3 * c->n);
+    sum = h5_check_add(sum, COLUMN_U8, c->kind_of, c->n);
+    sum = h5_check_add(sum, COLUMN_U8, c->bits, 2 * c->n);
+    sum = h5_check_add(sum, COLUMN_I32, c->row, c->n);
     for (int k = 0; k < s->scene->n_boundary; k++) {
         const struct history *h = &s->scene->boundary[k].history;
-        if (h->n_point > 0) sum = add(sum, COLUMN_F64, h->point, 2 * (int64_t)h->n_point);
+        if (h->n_point > 0) sum = h5_check_add(sum, COLUMN_F64, h->point, 2 * (int64_t)h->n_point);
     }
     memcpy(&inputs, &sum, sizeof inputs);
     return inputs;

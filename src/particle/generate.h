@@ -34,6 +34,9 @@ struct elements_host {
 struct elements_host *generate_elements(const struct scene *scene, struct scene_errors *errors);
 void generate_free(struct elements_host *elements);
 
+/* [m]; infinity if there are none. */
+double generate_smallest_radius(const struct elements_host *elements);
+
 /* Checks the start against the walls that are there at t = 0: an element must not be behind a plane
  * or within a rod, nor deeper than half its radius in any other wall. Names the first three and
  * counts the rest. */

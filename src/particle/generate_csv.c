@@ -139,12 +139,17 @@ static void read_lines(
     int64_t n_row = 0;
     bool has_header = false;
     errno = 0;
-    while (getline(&line, &room, file) >= 0) {
+    for (ssize_t n; (n = getline(&line, &room, file)) >= 0;) {
         csv->line++;
         /* byte order mark of some spreadsheets */
         const char *start =
             csv->line == 1 && strncmp(line, "\xef\xbb\xbf", 3) == 0 ? line + 3 : line;
-        if (is_blank(start)) continue;
+        const char *nul = memchr(start, 0, (size_t)(n - (start - line)));
+        if (nul) fault(csv, (int)(nul - start) + 1, "NUL byte: this is no text, or damaged");
+        if (nul || is_blank(start)) {
+            if (nul && !has_header) break;
+            continue;
+        }
         if (!has_header) {
             read_header(csv, start);
             if (csv->n_fault) break; /* what follows cannot be understood */

@@ -3,8 +3,10 @@
  * Spacing s = (1 + jitter) d_max, displacement at most jitter d_max/2 per axis: a sphere never
  * leaves its cube of edge s, so spheres never overlap, whatever the random numbers are. Costs one
  * test per site; with gravity along an axis, only up to the layer where `count` is reached. */
+#include "base/vector.h"
 #include "comm/fail.h"
 #include "generate_parts.h"
+#include "results/digest.h"
 #include "shape/region.h"
 
 #include <math.h>
@@ -16,17 +18,10 @@ static const double slack = 1e-9;
 
 /* Random number in [0, 1) as a function of its key: splitmix64's finaliser over seed, site and
  * stream (Steele, Lea, Flood 2014). */
-static uint64_t mix(uint64_t z)
-{
-    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-    return z ^ z >> 31;
-}
-
 static double random_at(uint64_t seed, uint64_t site, uint64_t stream)
 {
-    const uint64_t step = 0x9e3779b97f4a7c15u;
-    uint64_t h = mix(mix(mix(seed + step) + site * step + step) ^ (stream + 1) * step);
+    uint64_t of_site = digest_mix(digest_mix(seed + DIGEST_G) + site * DIGEST_G + DIGEST_G),
+             h = digest_mix(of_site ^ (stream + 1) * DIGEST_G);
     return (double)(h >> 11) * 0x1p-53;
 }
 
@@ -42,9 +37,11 @@ struct fill {
 
 static void find_up(struct fill *fill, const double gravity[3])
 {
-    double g = sqrt(gravity[0] * gravity[0] + gravity[1] * gravity[1] + gravity[2] * gravity[2]);
     fill->up[2] = 1;
-    for (int a = 0; a < 3 && g > 0; a++) fill->up[a] = -gravity[a] / g;
+    if (vector_is_direction(gravity)) {
+        for (int a = 0; a < 3; a++) fill->up[a] = -gravity[a];
+        vector_normalise(fill->up);
+    }
     fill->layers_along = 2;
     for (int a = 1; a >= 0; a--)
         if (fabs(fill->up[a]) > fabs(fill->up[fill->layers_along])) fill->layers_along = a;

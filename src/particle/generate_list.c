@@ -1,26 +1,23 @@
 /* The list of elements while they are collected. */
 #include "generate_parts.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "comm/fail.h"
 
-static void *grow(void *old, int64_t n, size_t bytes)
-{
-    return fail_realloc(old, (size_t)n * bytes);
-}
-
-static void reserve(struct generate_list *list, int64_t n)
+static void reserve(struct generate_list *list, int64_t room)
 {
     struct elements_host *e = list->elements;
-    list->room = n;
-    e->x = grow(e->x, n, 3 * sizeof(double));
-    e->v = grow(e->v, n, 3 * sizeof(double));
-    e->w = grow(e->w, n, 3 * sizeof(double));
-    e->radius = grow(e->radius, n, sizeof(double));
-    e->material = grow(e->material, n, sizeof(int));
-    e->group = grow(e->group, n, sizeof(int));
+    size_t n = (size_t)room;
+    list->room = room;
+    e->x = fail_realloc(e->x, 3 * n * sizeof *e->x);
+    e->v = fail_realloc(e->v, 3 * n * sizeof *e->v);
+    e->w = fail_realloc(e->w, 3 * n * sizeof *e->w);
+    e->radius = fail_realloc(e->radius, n * sizeof *e->radius);
+    e->material = fail_realloc(e->material, n * sizeof *e->material);
+    e->group = fail_realloc(e->group, n * sizeof *e->group);
 }
 
 int64_t generate_add(struct generate_list *list, const struct scene *scene, int group,
@@ -49,4 +46,11 @@ void generate_free(struct elements_host *elements)
     free(elements->material);
     free(elements->group);
     free(elements);
+}
+
+double generate_smallest_radius(const struct elements_host *elements)
+{
+    double r = INFINITY;
+    for (int64_t i = 0; i < elements->n; i++) r = fmin(r, elements->radius[i]);
+    return r;
 }

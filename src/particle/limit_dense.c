@@ -22,11 +22,6 @@ enum { CLASSES_MOST = 4 /* per material */, ROUNDS = 12 };
 #define OVERLAP_LEAST 1e-4
 #define THIRTEEN_FIT 1.0911
 
-static double mass_of(const struct scene *scene, int material, double r)
-{
-    return scene->material[material].density * (4.0 / 3.0) * M_PI * r * r * r;
-}
-
 void limit_material(const struct scene *scene, int a, int b, double *row)
 {
     contact_table_material(scene, a, b, row);
@@ -81,9 +76,9 @@ struct limit_class *limit_classes(
         struct limit_class small = all[2 * k], large = all[2 * k + 1];
         if (small.n == 0) continue;
         bool one = large.r < 1.001 * small.r;
-        small.w = 1 / mass_of(scene, small.material, small.r);
+        small.w = 1 / scene_mass(scene, small.material, small.r);
         large.material = small.material;
-        large.w = 1 / mass_of(scene, large.material, large.r);
+        large.w = 1 / scene_mass(scene, large.material, large.r);
         large.n = small.n;
         all[n++] = small;
         if (!one) all[n++] = large;

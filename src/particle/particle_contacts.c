@@ -92,6 +92,37 @@ static void list_free(struct list *l)
     free(l->mine);
 }
 
+/* Columns of a table of contacts in a frame. */
+enum { ID, OTHER, STATE, HISTORY, LEDGER, N_COLUMN };
+struct columns {
+    struct {
+        const char *name, *unit, *text;
+        enum column_type type;
+        int width; /* 0: not there */
+    } of[N_COLUMN];
+};
+
+static const char *other_name(bool wall)
+{
+    return wall ? "primitive" : "partner";
+}
+
+static struct columns columns_of(const struct sim *s, const struct list *l, bool wall)
+{
+    return (struct columns){{
+        [ID] = {"id", "1", "global id of the element; of the lower one in a pair", COLUMN_I64, 1},
+        [OTHER] = {other_name(wall), "1", "the other element, or the primitive of the wall",
+            COLUMN_I64, 1},
+        [STATE] = {"state", "1", "bit 1: touching, bit 2: bonded", COLUMN_I32, 1},
+        [HISTORY] = {"history", "m",
+            "springs and dashpot forces, see kernels/contact/contact_memory.h", COLUMN_F64,
+            l->layout.history},
+        [LEDGER] = {"ledger", "J",
+            "taken since the sums were last made, see kernels/contact/ledger.h", COLUMN_F64,
+            s->particle->features.energy ? LEDGER_WIDTH : 0},
+    }};
+}
+
 /* Rows under construction. */
 struct rows {
     int64_t n, *id, *other;
@@ -144,20 +175,18 @@ int64_t particle_contacts_sheet(struct sim *s, struct sheet *t, bool wall)
         .ledger = sheet_keep(
             t, fail_alloc((run->features.energy ? n * LEDGER_WIDTH : 0) * sizeof *r.ledger))};
     read_rows(s, &l, &r);
+    const struct columns c = columns_of(s, &l, wall);
+    void *const data[] = {r.id, r.other, r.state, r.history, r.ledger};
+    for (int k = 0; k < N_COLUMN; k++) {
+        if (c.of[k].width == 0) continue;
+        if (k == HISTORY)
+            sheet_add_real(t, run->features.real_is_float, c.of[k].name, c.of[k].unit, c.of[k].text,
+                c.of[k].width, r.history, (size_t)r.n);
+        else
+            sheet_add(
+                t, c.of[k].name, c.of[k].unit, c.of[k].text, c.of[k].type, c.of[k].width, data[k]);
+    }
     list_free(&l);
-    sheet_add(
-        t, "id", "1", "global id of the element; of the lower one in a pair", COLUMN_I64, 1, r.id);
-    sheet_add(t, wall ? "primitive" : "partner", "1",
-        "the other element, or the primitive of the wall", COLUMN_I64, 1, r.other);
-    sheet_add(t, "state", "1", "bit 1: touching, bit 2: bonded", COLUMN_I32, 1, r.state);
-    if (width > 0)
-        sheet_add_real(t, run->features.real_is_float, "history", "m",
-            "springs and dashpot forces, see kernels/contact/contact_memory.h", (int)width,
-            r.history, (size_t)r.n);
-    if (run->features.energy)
-        sheet_add(t, "ledger", "J",
-            "taken since the sums were last made, see kernels/contact/ledger.h", COLUMN_F64,
-            LEDGER_WIDTH, r.ledger);
     return r.n;
 }
 
@@ -175,8 +204,7 @@ static int by_key(const void *a, const void *b)
 
 static struct key *sort_keys(const struct frame_table *t, bool wall)
 {
-    const int64_t *id = frame_table_get(t, "id"),
-                  *other = frame_table_get(t, wall ? "primitive" : "partner");
+    const int64_t *id = frame_table_get(t, "id"), *other = frame_table_get(t, other_name(wall));
     struct key *key = fail_alloc((size_t)t->n * sizeof *key);
     for (int64_t i = 0; i < t->n; i++) key[i] = (struct key){id[i], other[i], i};
     qsort(key, (size_t)t->n, sizeof *key, by_key);
@@ -224,8 +252,7 @@ static int64_t fill(struct sim *s, const struct list *l, const struct frame_tabl
 /* A pair that a border cuts is known to both ranks. */
 static void send(struct sim *s, struct frame_table *t, const int32_t *owner, bool wall)
 {
-    const int64_t *id = frame_table_get(t, "id"),
-                  *other = frame_table_get(t, wall ? "primitive" : "partner");
+    const int64_t *id = frame_table_get(t, "id"), *other = frame_table_get(t, other_name(wall));
     int32_t *to = fail_alloc(2 * (size_t)t->n * sizeof *to);
     for (int64_t i = 0; i < t->n; i++) {
         to[2 * i] = owner[id[i]];
@@ -241,14 +268,12 @@ void particle_contacts_restore(struct sim *s, const int32_t *owner, bool wall)
     struct list l = wall ? walls_of(s) : pairs_of(s);
     struct frame_table t =
         frame_table_begin(s->comm, reader, wall ? "wall_contacts" : "pairs", "id");
-    frame_table_add(&t, reader, "id", COLUMN_I64, 1);
-    frame_table_add(&t, reader, wall ? "primitive" : "partner", COLUMN_I64, 1);
-    frame_table_add(&t, reader, "state", COLUMN_I32, 1);
-    if (l.layout.history > 0) frame_table_add(&t, reader, "history", COLUMN_F64, l.layout.history);
-    if (s->particle->features.energy)
-        frame_table_add(&t, reader, "ledger", COLUMN_F64, LEDGER_WIDTH);
+    const struct columns c = columns_of(s, &l, wall);
+    for (int k = 0; k < N_COLUMN; k++)
+        if (c.of[k].width > 0)
+            frame_table_add(&t, reader, c.of[k].name, c.of[k].type, c.of[k].width);
     frame_table_check_range(&t, s->comm, "id", 0, s->n_first - 1);
-    if (!wall) frame_table_check_range(&t, s->comm, "partner", 0, s->n_first - 1);
+    if (!wall) frame_table_check_range(&t, s->comm, other_name(wall), 0, s->n_first - 1);
     frame_table_check_finite(&t, s->comm);
     int64_t n[2] = {t.n, 0};
     send(s, &t, owner, wall);

@@ -176,9 +176,15 @@ static enum column_type type_of(const struct field_row *row)
                                        : COLUMN_F64;
 }
 
+/* Whether the run has the field, for a use. */
+static bool is_for(const struct sim *s, const struct field_row *row, int use)
+{
+    return row->use & use && row->is_there(&s->particle->features);
+}
+
 static bool is_state(const struct sim *s, const struct field_row *row)
 {
-    return row->use & OUTPUT_FIELDS_STATE && row->is_there(&s->particle->features);
+    return is_for(s, row, OUTPUT_FIELDS_STATE);
 }
 
 /* Numbers from one element to the next in the device's buffer. */
@@ -232,10 +238,11 @@ static void add(struct sim *s, struct sheet *sheet, const struct particles_host 
 void particle_fields_show(struct sim *s, struct sheet *sheet, const struct particles_host *host)
 {
     for (int k = 0; k < N_ROW; k++)
-        if (field_row[k].use & OUTPUT_FIELDS_UNASKED) add(s, sheet, host, &field_row[k], true);
+        if (is_for(s, &field_row[k], OUTPUT_FIELDS_UNASKED))
+            add(s, sheet, host, &field_row[k], true);
     for (int i = 0; i < s->scene->output.n_field; i++)
         for (int k = 0; k < N_ROW; k++)
-            if (field_row[k].use & OUTPUT_FIELDS_SHOWN &&
+            if (is_for(s, &field_row[k], OUTPUT_FIELDS_SHOWN) &&
                 !strcmp(field_row[k].name, s->scene->output.field[i]))
                 add(s, sheet, host, &field_row[k], true);
 }

@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "results/digest.h"
 #include "comm/fail.h"
 #include "results/h5_check.h"
 #include "run/resume.h"
@@ -24,20 +23,16 @@ void particle_read(struct sim *s)
         fail_stop_together(EXIT_SCENE, "more than %d elements", INT32_MAX / 2);
 }
 
-static uint64_t add(uint64_t sum, enum column_type type, const void *data, int64_t n)
-{
-    return digest_mix((sum ^ h5_check_sum(type, data, n, 0)) + DIGEST_G);
-}
-
 static void sum_inputs(struct sim *s)
 {
     struct particle_run *run = s->particle;
     const struct elements_host *e = run->first;
     uint64_t sum = (uint64_t)e->n;
-    sum = add(sum, COLUMN_F64, e->x, 3 * e->n);
-    sum = add(sum, COLUMN_F64, e->radius, e->n);
-    sum = add(sum, COLUMN_I32, e->material, e->n);
-    sum = add(sum, COLUMN_F64, run->walls->primitive, 12 * (int64_t)run->walls->n_primitive);
+    sum = h5_check_add(sum, COLUMN_F64, e->x, 3 * e->n);
+    sum = h5_check_add(sum, COLUMN_F64, e->radius, e->n);
+    sum = h5_check_add(sum, COLUMN_I32, e->material, e->n);
+    sum =
+        h5_check_add(sum, COLUMN_F64, run->walls->primitive, 12 * (int64_t)run->walls->n_primitive);
     memcpy(&s->inputs, &sum, sizeof sum);
 }
 

@@ -26,14 +26,6 @@ static void adapt_skin(struct sim *s, double radius)
     run->skin = fmin(fmax(run->skin, SKIN_SMALLEST * radius), SKIN_LARGEST * radius);
 }
 
-static double smallest_radius(const struct sim *s)
-{
-    struct particle_run *run = s->particle;
-    double r = INFINITY;
-    for (int64_t i = 0; i < run->first->n; i++) r = fmin(r, run->first->radius[i]);
-    return r;
-}
-
 /* What the move of elements out of the domain and around periodic directions changes. */
 static void account(struct sim *s)
 {
@@ -185,7 +177,7 @@ void particle_regroup(struct sim *s)
     check_inside(s, &now);
     if (run->assigned) assigned_complete(run->assigned, run->pairs);
     if (run->features.energy) energy_collect(s);
-    adapt_skin(s, smallest_radius(s));
+    adapt_skin(s, generate_smallest_radius(s->particle->first));
     if (run->wall_contacts) wall_contacts_set_step(run->wall_contacts, s->step);
     deal(s, &now);
     s->n_rebuild++;

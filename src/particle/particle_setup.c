@@ -117,13 +117,6 @@ static void distribute(struct sim *s)
     free(take);
 }
 
-static double smallest_radius(const struct elements_host *e)
-{
-    double r = INFINITY;
-    for (int64_t i = 0; i < e->n; i++) r = fmin(r, e->radius[i]);
-    return r;
-}
-
 /* Forces of step 0: velocities are of the same time as positions, nothing has moved yet. A time
  * step of almost nothing says so to the laws. */
 static void first_forces(struct sim *s)
@@ -142,7 +135,7 @@ static void first_forces(struct sim *s)
 static void start(struct sim *s)
 {
     struct particle_run *run = s->particle;
-    run->skin = SKIN_START * smallest_radius(run->first);
+    run->skin = SKIN_START * generate_smallest_radius(run->first);
     distribute(s);
     if (run->wall_contacts) wall_contacts_set_step(run->wall_contacts, 0);
     particle_build(s);

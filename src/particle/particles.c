@@ -114,11 +114,6 @@ void particles_swap(struct particles *p)
     }
 }
 
-static double mass_of(const struct scene *scene, int material, double radius)
-{
-    return scene->material[material].density * (4.0 / 3.0) * M_PI * radius * radius * radius;
-}
-
 /* One element's record, as kernels/particle/element.h reads it. */
 static void write_record(
     char *record, const struct features *f, const struct particles_host *h, int64_t i)
@@ -176,7 +171,7 @@ void particles_host_kind(struct particles_host *h, int64_t i, const struct scene
     int64_t gid = h->gid[i];
     h->radius[i] = first->radius[gid];
     h->material[i] = first->material[gid];
-    h->mass[i] = mass_of(scene, h->material[i], first->radius[gid]);
+    h->mass[i] = scene_mass(scene, h->material[i], first->radius[gid]);
 }
 
 void particles_take(struct particles *p, const struct features *features,

@@ -30,6 +30,11 @@ uint64_t h5_check_sum(enum column_type type, const void *data, int64_t n, int64_
     return sum;
 }
 
+uint64_t h5_check_add(uint64_t all, enum column_type type, const void *data, int64_t n)
+{
+    return digest_mix((all ^ h5_check_sum(type, data, n, 0)) + DIGEST_G);
+}
+
 /* Column type of a stored type, and the type to read it with (-1: none of ours). The caller closes
  * `memory`. */
 static enum column_type type_of(hid_t stored, hid_t *memory)

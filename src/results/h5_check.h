@@ -12,6 +12,8 @@
  * bits as stored and zero extended, mix and G of digest.h. Independent of how the rows are spread
  * over ranks. data [n]; `begin`: flat index of the first number. Text: its bytes as U8. */
 uint64_t h5_check_sum(enum column_type type, const void *data, int64_t n, int64_t begin);
+/* Takes such a sum of one more array [n] into the number that stands for several in their order. */
+uint64_t h5_check_add(uint64_t all, enum column_type type, const void *data, int64_t n);
 
 /* Reads one of n_part parts of the rows of a dataset (any of the column types, or a fixed-length
  * string) and gives its sum; those of all parts have to add up to `expected`, the attribute

@@ -80,7 +80,7 @@ bool log_is_ours(const char *dir)
     return same;
 }
 
-void log_attach(struct log *log, const char *dir, bool append)
+void log_attach(struct log *log, const char *dir, bool append, const char *head)
 {
     if (!log->speaks) return;
     log->path = fail_format("%s/log.txt", dir);
@@ -89,6 +89,7 @@ void log_attach(struct log *log, const char *dir, bool append)
     if (fd < 0) fail_stop(EXIT_IO, "%s", error);
     log->file = fdopen(fd, "a");
     if (!log->file) fail_stop(EXIT_IO, "cannot open '%s': %s", log->path, strerror(errno));
+    to_file(log, head);
     if (log->early) to_file(log, log->early);
     free(log->early);
     log->early = NULL;

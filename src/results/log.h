@@ -8,7 +8,7 @@
 
 struct log;
 
-/* What the first line of a log begins with: a version follows. */
+/* What log.txt begins with: a version follows. */
 #define LOG_FIRST_LINE "democles "
 /* Whether DIR/log.txt is the log of a run, not a link and not somebody else's file. */
 bool log_is_ours(const char *dir);
@@ -17,8 +17,9 @@ bool log_is_ours(const char *dir);
  * into log.txt too. */
 struct log *log_create(const struct comm *comm, bool quiet);
 /* From now on also to DIR/log.txt, which is made, or for a continued run (`append`) continued; a
- * link of that name is not followed. Failure: EXIT_IO. */
-void log_attach(struct log *log, const char *dir, bool append);
+ * link of that name is not followed. `head` is for the file alone, before all else. Failure:
+ * EXIT_IO. */
+void log_attach(struct log *log, const char *dir, bool append, const char *head);
 void log_free(struct log *log); /* NULL is fine */
 
 /* One or more lines, printf. A newline is added at the end. */

@@ -11,6 +11,7 @@
 #include "resume.h"
 #include "base/signals.h"
 #include "base/whole.h"
+#include "version.h"
 
 struct outputs {
     struct measures *measures;
@@ -36,7 +37,8 @@ struct outputs *output_create(struct sim *s)
     if (s->from) measures_check(s);
     if (s->from) output_dir_resume(s->comm, &request, s->from->index);
     else output_dir_create(s->comm, &request);
-    log_attach(s->log, s->options->dir, s->from != NULL);
+    log_attach(s->log, s->options->dir, s->from != NULL,
+        LOG_FIRST_LINE DEMOCLES_VERSION " (" DEMOCLES_GIT ")\n");
     out->measures = measures_create(s);
     out->frame_every = steps_of(s, s->scene->output.every);
     out->checkpoint_every = steps_of(s, s->scene->output.checkpoint_every);

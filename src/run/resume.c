@@ -176,13 +176,15 @@ static bool can_change(const char *set)
 
 static void refuse_changes(const char *const *set, int n_set)
 {
+    char keys[256] = "";
+    for (size_t k = 0, n = 0; k < sizeof may_change / sizeof *may_change; k++)
+        n += (size_t)snprintf(keys + n, sizeof keys - n, "%s, ", may_change[k]);
     for (int k = 0; k < n_set; k++)
         if (!can_change(set[k]))
             fail_stop_together(EXIT_SCENE,
-                "--set %s: a restarted run cannot change '%.*s'; it can change title, time.end, "
-                "time.allow_unstable, lattice.relax.tolerance, output, measure, partition, and "
-                "the paths of files",
-                set[k], (int)strcspn(set[k], "="), set[k]);
+                "--set %s: a restarted run cannot change '%.*s'; it can change %sand the paths of "
+                "files",
+                set[k], (int)strcspn(set[k], "="), set[k], keys);
 }
 
 /* Whoever has edited the copy of the scene means something by it. */

@@ -111,7 +111,14 @@ static char *read_lines(struct history *table, const char *name, FILE *file)
     char *line = NULL, *problem = NULL;
     size_t room = 0, n_room = 0;
     bool has_line = false;
-    for (int number = 1; !problem && getline(&line, &room, file) >= 0; number++) {
+    ssize_t n;
+    for (int number = 1; !problem && (n = getline(&line, &room, file)) >= 0; number++) {
+        const char *nul = memchr(line, 0, (size_t)n);
+        if (nul) {
+            problem = fail_format("%s:%d:%d: NUL byte: this is no text, or damaged", name, number,
+                (int)(nul - line) + 1);
+            break;
+        }
         if (line[strspn(line, " \t\r\n")] == 0) continue;
         double point[2];
         const char *wrong = parse(line, point);

@@ -1,7 +1,6 @@
 #include "scene.h"
 
-#include <stdarg.h>
-#include <stdio.h>
+#include <math.h>
 #include <stdlib.h>
 
 #include "comm/fail.h"
@@ -59,18 +58,18 @@ void scene_free(struct scene *scene)
     free(scene);
 }
 
+double scene_mass(const struct scene *scene, int material, double radius)
+{
+    return scene->material[material].density * (4.0 / 3.0) * M_PI * radius * radius * radius;
+}
+
 void scene_errors_add(struct scene_errors *errors, const char *format, ...)
 {
-    va_list args, again;
-    va_start(args, format);
-    va_copy(again, args);
-    int n = vsnprintf(NULL, 0, format, args);
-    va_end(args);
-    char *text = fail_alloc((size_t)n + 1);
-    vsnprintf(text, (size_t)n + 1, format, again);
-    va_end(again);
+    va_list args;
     errors->text = fail_realloc(errors->text, (size_t)(errors->n + 1) * sizeof *errors->text);
-    errors->text[errors->n++] = text;
+    va_start(args, format);
+    errors->text[errors->n++] = fail_vformat(format, args);
+    va_end(args);
 }
 
 void scene_errors_free(struct scene_errors *errors)

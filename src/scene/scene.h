@@ -283,6 +283,9 @@ struct scene *scene_read(
 struct scene *scene_read_text(const char *path, const char *text, size_t n, const char *const *set,
     int n_set, struct scene_errors *errors);
 void scene_free(struct scene *scene);
+
+/* Mass of a sphere [kg]; radius [m]. */
+double scene_mass(const struct scene *scene, int material, double radius);
 void scene_errors_add(struct scene_errors *errors, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 void scene_errors_free(struct scene_errors *errors);

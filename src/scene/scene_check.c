@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/vector.h"
 #include "comm/fail.h"
 #include "laws/restitution.h"
 #include "scene_path.h"
@@ -11,9 +12,12 @@
 
 static void check_direction(struct scene_reader *reader, char *path, const double v[3])
 {
-    if (scene_check_is_given(reader, path) && !scene_issue_is_below(reader, path) && v[0] == 0 &&
-        v[1] == 0 && v[2] == 0)
-        scene_issue_on(reader, path, "a direction must not be zero");
+    bool is_zero = v[0] == 0 && v[1] == 0 && v[2] == 0;
+    if (scene_check_is_given(reader, path) && !scene_issue_is_below(reader, path) &&
+        !vector_is_direction(v))
+        scene_issue_on(reader, path,
+            is_zero ? "a direction must not be zero"
+                    : "too short for a direction: numbers below 2.2e-308 lose their digits");
     free(path);
 }
 
@@ -39,8 +43,8 @@ static void check_walls(struct scene_reader *reader)
         check_direction(reader, fail_format("walls[%d].surface.rectangle.normal", k), wall->normal);
         scene_check_box(
             reader, fail_format("walls[%d].surface.box", k), wall->min, wall->max, false);
-        scene_check_cylinder(
-            reader, fail_format("walls[%d].surface.cylinder", k), wall->from, wall->to);
+        scene_check_cylinder(reader, fail_format("walls[%d].surface.cylinder", k), wall->from,
+            wall->to, wall->radius);
         check_direction(
             reader, fail_format("walls[%d].motion.rotation.axis", k), wall->rotation_axis);
         char *path = fail_format("walls[%d].motion", k),
@@ -217,12 +221,6 @@ void scene_check(struct scene_reader *reader)
     check_domain(reader);
 }
 
-static void normalise(double v[3])
-{
-    double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    for (int k = 0; k < 3; k++) v[k] /= length;
-}
-
 void scene_check_derive(struct scene *scene)
 {
     scene_check_derive_damping(scene);
@@ -233,11 +231,12 @@ void scene_check_derive(struct scene *scene)
     }
     for (int k = 0; k < scene->n_wall; k++) {
         struct wall *wall = &scene->wall[k];
-        if (wall->kind == SURFACE_PLANE || wall->kind == SURFACE_RECTANGLE) normalise(wall->normal);
+        if (wall->kind == SURFACE_PLANE || wall->kind == SURFACE_RECTANGLE)
+            vector_normalise(wall->normal);
         /* no rotation */
         if (wall->rotation_axis[0] == 0 && wall->rotation_axis[1] == 0 &&
             wall->rotation_axis[2] == 0)
             wall->rotation_axis[2] = 1;
-        normalise(wall->rotation_axis);
+        vector_normalise(wall->rotation_axis);
     }
 }

@@ -1,7 +1,5 @@
 /* Issues of one reading: collected with their place, sorted at the end. */
 #include <limits.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,8 +10,7 @@
 static void add(struct scene_reader *reader, const struct scene_node *node, const char *path,
     const char *format, va_list args)
 {
-    char text[2048];
-    vsnprintf(text, sizeof text, format, args);
+    char *text = fail_vformat(format, args);
     struct scene_issue issue = {
         .set = node->set, .line = node->line, .column = node->column, .order = reader->n_issue};
     issue.path = fail_strdup(path);
@@ -23,6 +20,7 @@ static void add(struct scene_reader *reader, const struct scene_node *node, cons
     else
         issue.text = fail_format(
             "%s:%d:%d: %s%s%s", reader->path, node->line, node->column, path, colon, text);
+    free(text);
     reader->issue =
         fail_realloc(reader->issue, (size_t)(reader->n_issue + 1) * sizeof *reader->issue);
     reader->issue[reader->n_issue++] = issue;

@@ -171,7 +171,8 @@ const struct scene_key scene_keys[] = {
 {"walls[].surface.box.max", KEY_VECTOR, NEEDED, UNIT_LENGTH, VEC(wall, max),
     .text = "highest corner"},
 {"walls[].surface.cylinder", KEY_MAP, ONE_OF, .mark = IS(wall, kind, SURFACE_CYLINDER),
-    .text = "circular cylinder, without end caps"},
+    .text = "circular cylinder: a pipe with open ends; with inside: false, a solid rod with flat "
+        "ends"},
 {"walls[].surface.cylinder.from", KEY_VECTOR, NEEDED, UNIT_LENGTH, VEC(wall, from),
     .text = "one end of the axis"},
 {"walls[].surface.cylinder.to", KEY_VECTOR, NEEDED, UNIT_LENGTH, VEC(wall, to),
@@ -179,7 +180,8 @@ const struct scene_key scene_keys[] = {
 {"walls[].surface.cylinder.radius", KEY_NUMBER, NEEDED, UNIT_LENGTH, .range = ABOVE_ZERO,
     .at = AT(wall, radius), .text = "radius of the cylinder"},
 {"walls[].surface.cylinder.inside", KEY_BOOL, .fallback = "true", .at = AT(wall, inside),
-    .text = "particles are inside (a pipe, a drum) rather than outside (a rod)"},
+    .text = "true: a thin pipe with contact on both sides, through which a sphere whose centre "
+        "crosses it is lost; false: a solid rod"},
 {"walls[].surface.stl", KEY_FILE, ONE_OF, .at = AT(wall, stl), .mark = IS(wall, kind, SURFACE_STL),
     .text = "triangle mesh of an STL file, with contact on both sides"},
 {"walls[].surface.scale", KEY_NUMBER, OPTIONAL, UNIT_LENGTH, "1", ABOVE_ZERO, .when = "stl",

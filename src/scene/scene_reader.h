@@ -69,8 +69,8 @@ bool scene_check_is_given(const struct scene_reader *reader, const char *path);
 /* min < max in every direction, or at least min <= max of a box that may be flat. */
 void scene_check_box(struct scene_reader *reader, char *path, const double min[3],
     const double max[3], bool may_be_flat);
-void scene_check_cylinder(
-    struct scene_reader *reader, char *path, const double from[3], const double to[3]);
+void scene_check_cylinder(struct scene_reader *reader, char *path, const double from[3],
+    const double to[3], double radius);
 /* Rules of a region at `path`, which is freed; a flat box is one that selects, not one that is
  * filled. */
 void scene_check_region(

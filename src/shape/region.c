@@ -4,16 +4,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/vector.h"
 #include "comm/fail.h"
 
 static char *open_cylinder(struct region_shape *s)
 {
     const struct region *r = s->region;
     for (int a = 0; a < 3; a++) s->axis[a] = r->to[a] - r->from[a];
-    s->length = sqrt(s->axis[0] * s->axis[0] + s->axis[1] * s->axis[1] + s->axis[2] * s->axis[2]);
-    if (!(s->length > 0)) return fail_format("the region's cylinder has no length");
+    if (!vector_is_direction(s->axis)) return fail_format("the region's cylinder has no length");
+    s->length = vector_normalise(s->axis);
     for (int a = 0; a < 3; a++) {
-        s->axis[a] /= s->length;
         double reach = r->radius * sqrt(fmax(0, 1 - s->axis[a] * s->axis[a]));
         s->low[a] = fmin(r->from[a], r->to[a]) - reach;
         s->high[a] = fmax(r->from[a], r->to[a]) + reach;

@@ -229,6 +229,28 @@ static bool is_text(const unsigned char *data, size_t size)
     return strnlen((const char *)data, HEADER) == (size < HEADER ? size : HEADER);
 }
 
+/* Where the text ends too early. */
+static char *nul_in(const char *path, const char *text)
+{
+    const char *start = text, *p = text;
+    int line = 1;
+    for (; *p; p++)
+        if (*p == '\n' || (*p == '\r' && p[1] != '\n')) {
+            line++;
+            start = p + 1;
+        }
+    return fail_format(
+        "%s:%d:%d: NUL byte: this text is damaged", path, line, (int)(p - start) + 1);
+}
+
+/* Whether it is text up to a first facet, not a binary file whose header begins with `solid`. */
+static bool has_facet(const char *text)
+{
+    for (; *text; text++)
+        if (strncasecmp(text, "facet", 5) == 0) return true;
+    return false;
+}
+
 static char *read_soup(const char *path, unsigned char *data, size_t size, struct stl_soup *soup)
 {
     uint32_t n = size >= HEADER ? u32_at(data + HEADER - 4) : 0;
@@ -242,9 +264,7 @@ static char *read_soup(const char *path, unsigned char *data, size_t size, struc
         data[n_text] = 0;
         return read_ascii(path, text_begin(data), soup);
     }
-    if (is_solid && strstr((const char *)data, "facet"))
-        return fail_format(
-            "%s: a NUL byte in the text, after %zu bytes", path, strlen((const char *)data));
+    if (is_solid && has_facet((const char *)data)) return nul_in(path, (const char *)data);
     if (size > 0 && is_text(data, size))
         return fail_format("%s: not an STL file: text that does not begin with 'solid'", path);
     if (size < HEADER)

@@ -1,6 +1,7 @@
 /* Scene -> flat table. Motion is in walls_pose.c. */
 #include "walls.h"
 
+#include "base/vector.h"
 #include "comm/fail.h"
 #include "kernels/contact/law_wall.h"
 #include "stl.h"
@@ -9,11 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static void cross(const double a[3], const double b[3], double c[3])
 {
     c[0] = a[1] * b[2] - a[2] * b[1];
@@ -21,24 +17,17 @@ static void cross(const double a[3], const double b[3], double c[3])
     c[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-static double normalise(double a[3])
-{
-    double length = sqrt(dot(a, a));
-    for (int k = 0; k < 3; k++) a[k] /= length;
-    return length;
-}
-
 void walls_axes(const double normal[3], double u[3], double v[3])
 {
     double m[3] = {normal[0], normal[1], normal[2]};
-    normalise(m);
+    vector_normalise(m);
     /* left out unless clearly not the nearest: 1e-9 keeps a rounded diagonal in one class */
     int out = 2;
     for (int k = 1; k >= 0; k--)
         if (fabs(m[k]) > fabs(m[out]) + 1e-9) out = k;
     int first = out == 0 ? 1 : 0, second = out == 2 ? 1 : 2;
     for (int k = 0; k < 3; k++) u[k] = (k == first) - m[first] * m[k];
-    normalise(u);
+    vector_normalise(u);
     cross(m, u, v);
     if (v[second] < 0)
         for (int k = 0; k < 3; k++) v[k] = -v[k];
@@ -86,7 +75,7 @@ static void add_plane(struct walls *walls, int w, const double point[3], const d
     double *row = add_primitive(walls, w, WALL_PLANE);
     memcpy(row, point, 3 * sizeof(double));
     memcpy(row + 3, normal, 3 * sizeof(double));
-    normalise(row + 3);
+    vector_normalise(row + 3);
 }
 
 static void add_rectangle(struct walls *walls, int w, const struct wall *wall)
@@ -118,7 +107,7 @@ static void add_cylinder(struct walls *walls, int w, const struct wall *wall)
     double *row = add_primitive(walls, w, wall->inside ? WALL_PIPE : WALL_ROD), unused[3];
     memcpy(row, wall->from, 3 * sizeof(double));
     for (int a = 0; a < 3; a++) row[3 + a] = wall->to[a] - wall->from[a];
-    row[10] = normalise(row + 3);
+    row[10] = vector_normalise(row + 3);
     walls_axes(row + 3, row + 6, unused);
     row[9] = wall->radius;
     for (int k = 0; k < 2; k++)
@@ -184,7 +173,7 @@ static void share_features(struct walls *walls)
 
 static bool is_zero(const double a[3])
 {
-    return !(dot(a, a) > 0);
+    return !(fabs(a[0]) > 0) && !(fabs(a[1]) > 0) && !(fabs(a[2]) > 0);
 }
 
 static void bound_wall(struct walls *walls, int w)

@@ -1,4 +1,5 @@
-"""Few bodies, exact answers: what the tests through the program share. Writes scenes, runs them, reads the state at the end."""
+"""Few bodies, exact answers: what the tests through the program share.
+Writes scenes, runs them, reads the state at the end."""
 import json
 import math
 import pathlib
@@ -17,7 +18,8 @@ DEMOCLES = None
 
 
 class State:
-    """Of all elements at the end of a run, by number: x, v [n][3], w [n][3], radius [n]; the folder's measures by name."""
+    """Of all elements at the end of a run, by number: x, v [n][3], w [n][3], radius [n];
+    the folder's measures by name."""
 
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""run_case.py DEMOCLES SCENE CHECK [ARG...]: runs the scene with these arguments in a new folder and then the check of the case."""
+"""run_case.py DEMOCLES SCENE CHECK [ARG...]: runs the scene with these arguments in a new folder
+and then the check of the case."""
 import pathlib
 import shutil
 import subprocess

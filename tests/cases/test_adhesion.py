@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Adhesion by JKR: what parting costs two spheres, and how slowly they meet to stick. Argument: democles."""
+"""Adhesion by JKR: what parting costs two spheres,
+and how slowly they meet to stick. Argument: democles."""
 import math
 
 import bodies
@@ -7,7 +8,8 @@ import bodies
 R, M, YOUNG, POISSON, WORK = 2e-3, 8e-5, 20e6, 0.3, 0.1  # [m], [kg], [Pa], [1], [J/m2]
 M_STAR, R_STAR, E_STAR = M / 2, R / 2, YOUNG / (2 * (1 - POISSON**2))
 LENGTH = (2 * math.pi * WORK * math.sqrt(R_STAR) / E_STAR) ** (2 / 3)
-# energy at the end of the contact over that at the touch, in closed form (kernels/contact/law_normal.h)
+# energy at the end of the contact over that at the touch, in closed form
+# (kernels/contact/law_normal.h)
 COST = 4 / 3 * E_STAR * math.sqrt(R_STAR) * LENGTH**2.5 * (0.0375 * 4 ** (-1 / 3) + 0.225)
 SPEED = math.sqrt(2 * COST / M_STAR)  # slower spheres stick [m/s]
 GAP = 1e-6  # at the start [m]
@@ -15,7 +17,8 @@ GAP = 1e-6  # at the start [m]
 
 class Adhesion(bodies.Case):
     def test_parting(self):
-        """0.99 SPEED sticks; faster spheres leave with (v^2 - SPEED^2)^(1/2), the first order of the step in it below 1e-3."""
+        """0.99 SPEED sticks; faster spheres leave with (v^2 - SPEED^2)^(1/2),
+        the first order of the step in it below 1e-3."""
         factors = (0.99, 1.5, 2, 3)
         rows = []
         for k, factor in enumerate(factors):
@@ -48,7 +51,8 @@ class Adhesion(bodies.Case):
             gap = state.x[2 * k + 1, 0] - state.x[2 * k, 0] - 2 * R
             leaving = (state.v[2 * k + 1, 0] - state.v[2 * k, 0]) / SPEED
             print(
-                f"{factor} of the speed that sticks: gap {gap:.3g} m, leaving at {leaving:.6g} of it"
+                f"{factor} of the speed that sticks: gap {gap:.3g} m, "
+                f"leaving at {leaving:.6g} of it"
             )
             self.assertEqual(gap < LENGTH, factor < 1)
             if factor > 1:

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Binding: how fast two spheres may meet and still stick, and how fast they leave where they do not. Argument: democles."""
+"""Binding: how fast two spheres may meet and still stick,
+and how fast they leave where they do not. Argument: democles."""
 import math
 
 import bodies
@@ -13,13 +14,15 @@ GAP = 1e-6  # at the start [m]
 
 
 def threshold(z):
-    """In closed form: the oscillation with friction reaches the pull at its first swing outwards."""
+    """In closed form: the oscillation with friction reaches the pull
+    at its first swing outwards."""
     return SPEED * math.exp(z * (math.pi + math.acos(z)) / math.sqrt(1 - z * z))
 
 
 class Bonds(bodies.Case):
     def run_pairs(self, speeds, steps):
-        """speeds: [(pairing, relative speed)]. Gap [m] and relative speed [m/s] of each at the end, in the order given."""
+        """speeds: [(pairing, relative speed)].
+        Gap [m] and relative speed [m/s] of each at the end, in the order given."""
         rows, place = {"a": [], "b": []}, []
         for k, (pairing, speed) in enumerate(speeds):
             for side, name in zip((-1, 1), pairing):
@@ -75,7 +78,8 @@ class Bonds(bodies.Case):
                 self.assertGreater(gap, 1.5 * PULL / K)
 
     def test_speed_of_leaving(self):
-        """Breaking takes F_b^2/(2 k): v'^2 = v^2 - F_b^2/(k m*). The bond breaks up to one step late, so the step is small here."""
+        """Breaking takes F_b^2/(2 k): v'^2 = v^2 - F_b^2/(k m*).
+        The bond breaks up to one step late, so the step is small here."""
         speeds = [(("a", "a"), factor * SPEED) for factor in (1.5, 2, 4)]
         for (_, before), (_, after) in zip(speeds, self.run_pairs(speeds, 8000)):
             error = abs(after / math.sqrt(before**2 - SPEED**2) - 1)

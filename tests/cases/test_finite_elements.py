@@ -1,19 +1,25 @@
 #!/usr/bin/python3
-"""A plate with a corner force, at rest, against finite elements: the lattice's deflection of the corner tends to that of CalculiX (`ccx`) on the same
-plate. Argument: democles. Skipped (77) where there is no ccx.
+"""A plate with a corner force, at rest, against finite elements: the lattice's deflection of the
+corner tends to that of CalculiX (`ccx`) on the same plate. Argument: democles. Skipped (77) where
+there is no ccx.
 
-Both solve one problem. Steel, T = 20 mm thick, 6 T square, a force across spread evenly over the volume of a corner, T x T through the thickness.
-Held is the volume x >= 5.5 T, 1.5 T <= y <= 4.5 T: the middle half of an edge, half a thickness deep. The lattice's clamp stands at the centres of
-the fixed cells, so with an odd number of cells in T its faces, at odd multiples of T/2, pass through centres in every lattice, while the faces of
-the plate and of the loaded corner are faces of cells. With 2, 4, 8 cells it would stand elsewhere in each, by a share of a cell.
+Both solve one problem. Steel, T = 20 mm thick, 6 T square, a force across spread evenly over the
+volume of a corner, T x T through the thickness. Held is the volume x >= 5.5 T, 1.5 T <= y <= 4.5 T:
+the middle half of an edge, half a thickness deep. The lattice's clamp stands at the centres of the
+fixed cells, so with an odd number of cells in T its faces, at odd multiples of T/2, pass through
+centres in every lattice, while the faces of the plate and of the loaded corner are faces of cells.
+With 2, 4, 8 cells it would stand elsewhere in each, by a share of a cell.
 
-The order to expect is that of the clamp's singularity: around its upright edges displacement goes with r^s, sin(1.5 pi s) = s/(3 - 4 nu) for 270
-degrees of material in plane strain (Williams 1952, J. Appl. Mech. 19, 526), s = 0.595 here, and the error of a load's own deflection with h^(2 s)
-(of finite elements: Strang, Fix 1973, An Analysis of the Finite Element Method, ch. 8). s > 1/2 below 360 degrees, so the order is above 1.
+The order to expect is that of the clamp's singularity: around its upright edges displacement goes
+with r^s, sin(1.5 pi s) = s/(3 - 4 nu) for 270 degrees of material in plane strain (Williams 1952,
+J. Appl. Mech. 19, 526), s = 0.595 here, and the error of a load's own deflection with h^(2 s) (of
+finite elements: Strang, Fix 1973, An Analysis of the Finite Element Method, ch. 8). s > 1/2 below
+360 degrees, so the order is above 1.
 
-Finite elements: bricks with 20 nodes, reduced integration (C3D20R), T/2 wide, and halved towards the edges of the clamp.
-Checked once, at 1 kN: halved 3, 4, 5, 6 times in the plane 39.125, 39.165, 39.183, 39.190 um; 5 times in the plane and 2, 3, 4 times across the
-thickness 39.183, 39.186, 39.187 um; 5 times, and T/4 wide elsewhere, 39.183 um. So 5 and 2 are within 0.05 % of the limit."""
+Finite elements: bricks with 20 nodes, reduced integration (C3D20R), T/2 wide, and halved towards
+the edges of the clamp. Checked once, at 1 kN: halved 3, 4, 5, 6 times in the plane 39.125, 39.165,
+39.183, 39.190 um; 5 times in the plane and 2, 3, 4 times across the thickness 39.183, 39.186,
+39.187 um; 5 times, and T/4 wide elsewhere, 39.183 um. So 5 and 2 are within 0.05 % of the limit."""
 import json
 import math
 import pathlib
@@ -38,7 +44,8 @@ BOUND, ORDER, LIMIT = (
     0.005,
 )  # largest error of the finest lattice, lowest order, largest error of the limit
 
-# Nodes of a brick in half edges: its corners, below and then above, and the middles of the edges between these.
+# Nodes of a brick in half edges: its corners, below and then above,
+# and the middles of the edges between these.
 CORNERS = numpy.array(
     [[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0], [0, 0, 2], [2, 0, 2], [2, 2, 2], [0, 2, 2]]
 )
@@ -60,7 +67,8 @@ BRICK = numpy.vstack([CORNERS, [(CORNERS[a] + CORNERS[b]) // 2 for a, b in EDGES
 
 
 def lines(length, edges, halved):
-    """Planes [m] between elements along one axis, from 0 to length [T]: every T/2, and at T/2, T/4, ... from these edges [T]."""
+    """Planes [m] between elements along one axis, from 0 to length [T]: every T/2,
+    and at T/2, T/4, ... from these edges [T]."""
     unit = 2**halved
     at = set(range(0, length * unit + 1, unit // 2))
     at.update(
@@ -73,7 +81,8 @@ def lines(length, edges, halved):
 
 
 def mesh():
-    """Nodes [n][3] [m], elements [n][20] as numbers of nodes from 1, middles of the elements [n][3] [m]."""
+    """Nodes [n][3] [m], elements [n][20] as numbers of nodes from 1,
+    middles of the elements [n][3] [m]."""
     planes = [
         lines(SIDE, [5.5], IN_PLANE),
         lines(SIDE, [1.5, 4.5], IN_PLANE),
@@ -133,7 +142,8 @@ def finite_elements(folder):
     ]
     (folder / "plate.inp").write_text("\n".join(text) + "\n")
     run(folder, "ccx", "plate")
-    # Two tables of numbers: the corner's node and displacement, then the total reaction, which shows that the load is the one meant.
+    # Two tables of numbers: the corner's node and displacement, then the total reaction, which
+    # shows that the load is the one meant.
     numbers = [
         [float(word) for word in line.split()]
         for line in (folder / "plate.dat").read_text().splitlines()
@@ -142,10 +152,12 @@ def finite_elements(folder):
     (node, *displacement), reaction = numbers
     if node != corner or not numpy.allclose(reaction, [0, 0, FORCE], atol=1e-3 * FORCE):
         sys.exit(
-            f"ccx: displacement of node {node:g} instead of {corner}, or reaction {reaction} N instead of {FORCE:g} N"
+            f"ccx: displacement of node {node:g} instead of {corner}, or reaction {reaction} N "
+            f"instead of {FORCE:g} N"
         )
     print(
-        f"{len(elements)} finite elements, {len(nodes)} nodes: corner {displacement[2] * 1e6:.4f} um"
+        f"{len(elements)} finite elements, {len(nodes)} nodes: "
+        f"corner {displacement[2] * 1e6:.4f} um"
     )
     return displacement[2]
 
@@ -159,12 +171,14 @@ def box(low, high):
 
 
 def lattice(folder, n, democles):
-    """Deflection of the corner [m] with n cells through the thickness: linear from the centres of the three cells there."""
+    """Deflection of the corner [m] with n cells through the thickness:
+    linear from the centres of the three cells there."""
     h = T / n
     near = {
         f"cell_{i}_{j}": [(i + 0.5) * h, (j + 0.5) * h, T / 2] for i, j in ((0, 0), (1, 0), (0, 1))
     }
-    # Regions are larger than the clamp, and smaller than the loaded corner, by less than half a cell: none of its free faces bears the force.
+    # Regions are larger than the clamp, and smaller than the loaded corner, by less than half a
+    # cell: none of its free faces bears the force.
     scene = {
         "method": "lattice",
         "time": {"end": 1},
@@ -185,7 +199,8 @@ def lattice(folder, n, democles):
             },
             {"where": box([h / 4] * 3, [T - h / 4] * 3), "force": [0, 0, -FORCE]},
         ],
-        # Lines are written at multiples of their interval, not at rest: it is short, so that the last line is as good as at rest.
+        # Lines are written at multiples of their interval, not at rest: it is short, so that the
+        # last line is as good as at rest.
         "measure": [
             {"name": name, "every": 1e-5, "probe": {"at": at, "fields": ["displacement"]}}
             for name, at in near.items()
@@ -228,19 +243,25 @@ def main():
         found = [lattice(folder, n, democles) for n in LAYERS]
     errors, orders = [u / right - 1 for u in found], []
     for k, n in enumerate(LAYERS):
-        text = f"{n} cells through the thickness: corner {found[k] * 1e6:.4f} um, error {100 * errors[k]:.3f} %"
+        text = (
+            f"{n} cells through the thickness: corner {found[k] * 1e6:.4f} um, "
+            f"error {100 * errors[k]:.3f} %"
+        )
         if k:
             orders.append(math.log(abs(errors[k - 1] / errors[k])) / math.log(n / LAYERS[k - 1]))
             text += f", order {orders[-1]:.2f}"
         print(text)
-    # A wrong elastic constant can hide in the error of the finest lattice, not in where the two finest lead.
+    # A wrong elastic constant can hide in the error of the finest lattice,
+    # not in where the two finest lead.
     limit = found[-1] + (found[-1] - found[-2]) / ((LAYERS[-1] / LAYERS[-2]) ** POWER - 1)
     print(
-        f"limit of the last two with h^{POWER:g}: {limit * 1e6:.4f} um, error {100 * (limit / right - 1):.3f} %"
+        f"limit of the last two with h^{POWER:g}: {limit * 1e6:.4f} um, "
+        f"error {100 * (limit / right - 1):.3f} %"
     )
     if abs(errors[-1]) > BOUND or min(orders) < ORDER or abs(limit / right - 1) > LIMIT:
         sys.exit(
-            f"WRONG: last error at most {100 * BOUND:g} %, orders at least {ORDER}, error of the limit at most {100 * LIMIT:g} %"
+            f"WRONG: last error at most {100 * BOUND:g} %, orders at least {ORDER}, error of the "
+            f"limit at most {100 * LIMIT:g} %"
         )
 
 

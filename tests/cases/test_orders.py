@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Order in the time step, through the program: oblique impacts with dashpots, friction and slip, and restitution. Argument: democles."""
+"""Order in the time step, through the program: oblique impacts with dashpots, friction and slip,
+and restitution. Argument: democles."""
 import math
 import pathlib
 import subprocess
@@ -9,8 +10,9 @@ import numpy
 import bodies
 
 R, M, SPEED, PHASES = 5e-3, 2e-3, 0.5, 8  # [m], [kg], of approach [m/s], [1]
-# Stiff, so that the overlap is 0.3 % of the radius: the tangential dashpot is centred in time for lever arms r, not r - delta/2, and that adds an
-# error of first order times delta/r, which shows from 400 steps per contact on where delta/r is 3 %.
+# Stiff, so that the overlap is 0.3 % of the radius: the tangential dashpot is centred in time for
+# lever arms r, not r - delta/2, and that adds an error of first order times delta/r, which shows
+# from 400 steps per contact on where delta/r is 3 %.
 K, E_STAR = 1e6, 1e9  # [N/m], [Pa]
 NORMAL, TANGENT = numpy.array([0.6, 0.48, 0.64]), numpy.array([-0.8, 0.36, 0.48])
 IMPACTS = {
@@ -33,7 +35,8 @@ def order(coarse, n_coarse, fine, n_fine):
 
 
 class Oblique(bodies.Case):
-    """Sphere i flies at sphere j at rest. Every impact is there PHASES times, seen at times shifted by a share of the step, in one run."""
+    """Sphere i flies at sphere j at rest.
+    Every impact is there PHASES times, seen at times shifted by a share of the step, in one run."""
 
     def pairs(self, law, dt):
         rows = []
@@ -57,7 +60,8 @@ class Oblique(bodies.Case):
         return rows
 
     def velocities(self, law, n):
-        """v and w r of all [impact][phase][2 spheres * 6] after the impacts, with n steps per contact of equal spheres."""
+        """v and w r of all [impact][phase][2 spheres * 6] after the impacts,
+        with n steps per contact of equal spheres."""
         dt, nu = contact_time(law, 1) / n, 1 / 3
         normal = {"law": "linear", "stiffness": K} if law == "linear" else {"law": "hertz"}
         tangential = (
@@ -93,8 +97,9 @@ class Oblique(bodies.Case):
         return both.reshape(len(IMPACTS), PHASES, 12)
 
     def check(self, law, least_order):
-        """Bounds of the error at 50, 100, 400 steps per contact [m/s]: what a consistent scheme reaches (half-step normal, part of the first step);
-        the usual scheme has 6e-3, 3e-3, 8e-4, and 5e-2 at 50 for 1:10."""
+        """Bounds of the error at 50, 100, 400 steps per contact [m/s]: what a consistent scheme
+        reaches (half-step normal, part of the first step); the usual scheme has 6e-3, 3e-3, 8e-4,
+        and 5e-2 at 50 for 1:10."""
         bounds = {
             "sticking": (4.5e-4, 1.3e-4, 7.8e-6),
             "slipping": (4.5e-4, 1.3e-4, 7.8e-6),
@@ -118,7 +123,8 @@ class Oblique(bodies.Case):
         self.check("linear", 1.7)
 
     def test_hertz(self):
-        """Mindlin's stiffness starts with an infinite slope, and the dashpot like the fourth root of the overlap: between 1.5 and 2."""
+        """Mindlin's stiffness starts with an infinite slope, and the dashpot like the fourth root
+        of the overlap: between 1.5 and 2."""
         self.check("hertz", 1.4)
 
 
@@ -126,7 +132,8 @@ class Restitution(bodies.Case):
     """The case two_spheres with larger steps."""
 
     def errors(self, step):
-        """By law, root mean square over the pairings and over steps up to 12 % larger: the phase of the touch differs."""
+        """By law, root mean square over the pairings and over steps up to 12 % larger:
+        the phase of the touch differs."""
         out, errors = self.dir / "out", {"linear": [], "hertz": []}
         for factor in (1, 1.03, 1.07, 1.12):
             subprocess.run(
@@ -150,7 +157,8 @@ class Restitution(bodies.Case):
         return {law: math.sqrt(numpy.mean(numpy.square(e))) for law, e in errors.items()}
 
     def test_order(self):
-        """Hertz: the dashpot starts like the fourth root of the overlap; what the onset weight leaves of that is of order 1.25 in the end."""
+        """Hertz: the dashpot starts like the fourth root of the overlap; what the onset weight
+        leaves of that is of order 1.25 in the end."""
         coarse, fine = self.errors(8e-6), self.errors(5e-7)
         self.below(
             "linear, some 1,600 steps per contact: error of restitution", fine["linear"], 1e-6

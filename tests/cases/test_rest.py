@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""What shall not change does not: columns at rest stay, and a cloud of colliding spheres keeps its momentum. Argument: democles."""
+"""What shall not change does not: columns at rest stay, and a cloud of colliding spheres keeps its
+momentum. Argument: democles."""
 import math
 
 import numpy
@@ -29,7 +30,8 @@ def hertz(force, is_floor):
 
 class Rest(bodies.Case):
     def columns(self, n, z, steps, dt):
-        """n spheres on each other, linear and Hertz, in equilibrium by closed form. Start and end."""
+        """n spheres on each other, linear and Hertz, in equilibrium by closed form.
+        Start and end."""
         rows = {"a": column(n, lambda force, is_floor: force / K, 0), "b": column(n, hertz, 0.03)}
         laws = {
             "a": {
@@ -84,8 +86,9 @@ class Rest(bodies.Case):
         self.below("largest spin [rad/s]", numpy.abs(state.w).max(), 1e-11)
 
     def test_columns_come_to_rest(self):
-        """Damped. The pair-centred dashpot divides spring and dashpot by c = 1 + gamma dt/(2 m*), so that what rests under a load rests c times as
-        deep: linear z (k/m*)^(1/2) dt, here 3.7 % for two spheres. The overlap is within that of the closed form, and nothing creeps.
+        """Damped. The pair-centred dashpot divides spring and dashpot by c = 1 + gamma dt/(2 m*),
+        so that what rests under a load rests c times as deep: linear z (k/m*)^(1/2) dt, here 3.7 %
+        for two spheres. The overlap is within that of the closed form, and nothing creeps.
         """
         n, z, dt = 5, 0.3, 1e-5
         start, state = self.columns(n, z, 50000, dt)
@@ -102,7 +105,8 @@ class Rest(bodies.Case):
         )
 
     def test_momentum(self):
-        """300 spheres of many sizes fly at each other: dashpots, friction, rolling resistance. No walls, no gravity."""
+        """300 spheres of many sizes fly at each other: dashpots, friction, rolling
+        resistance. No walls, no gravity."""
         random, rows = numpy.random.default_rng(5), []
         for k in range(300):
             x = 0.0125 * numpy.array([k % 7, k // 7 % 7, k // 49]) + random.uniform(-1e-4, 1e-4, 3)

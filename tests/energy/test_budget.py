@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""The energy budget of small runs: it closes, with everything that gives and takes energy, and is the same text on any number of ranks.
+"""The energy budget of small runs: it closes, with everything that gives and takes energy, and is
+the same text on any number of ranks.
 
 Arguments: name of the test, democles, mpirun, its arguments."""
 import csv
@@ -26,7 +27,8 @@ contacts:
     normal: {{law: linear, stiffness: 1e4, damping_ratio: 0.2}}
     {law}
 elements:
-  - {{name: balls, material: ball, shape: {{sphere: {{diameter: 10 mm}}}}, fill: {{region: {{box: {region}}}, count: {n}, jitter: 0.05, seed: 1}}}}
+  - {{name: balls, material: ball, shape: {{sphere: {{diameter: 10 mm}}}},
+      fill: {{region: {{box: {region}}}, count: {n}, jitter: 0.05, seed: 1}}}}
 walls:
 {walls}
 domain: {domain}
@@ -41,13 +43,18 @@ materials:
   base: {{density: 1000, young: 1e9, poisson: 0.3, damping: {{mass: 100, link: 1e-6}}}}
   tip: {{density: 700, young: 5e8, poisson: 0.2}}
 bodies:
-  - {{name: base, material: base, cell: 10 mm, shape: {{box: {{min: [0, 0, 0], max: [0.2, 0.03, 0.02]}}}}}}
-  - {{name: tip, material: tip, cell: 10 mm, shape: {{box: {{min: [0.2, 0, 0], max: [0.3, 0.03, 0.02]}}}}}}
+  - {{name: base, material: base, cell: 10 mm,
+      shape: {{box: {{min: [0, 0, 0], max: [0.2, 0.03, 0.02]}}}}}}
+  - {{name: tip, material: tip, cell: 10 mm,
+      shape: {{box: {{min: [0.2, 0, 0], max: [0.3, 0.03, 0.02]}}}}}}
 boundaries:
-  - {{where: {{box: {{min: [-1, -1, -1], max: [0.01, 1, 1]}}}}, velocity: [0, 0.5, 0], history: {{sine: {{frequency: 600 Hz}}}}}}
+  - {{where: {{box: {{min: [-1, -1, -1], max: [0.01, 1, 1]}}}}, velocity: [0, 0.5, 0],
+      history: {{sine: {{frequency: 600 Hz}}}}}}
   - {{where: {{box: {{min: [-1, -1, -1], max: [0.01, 1, 1]}}}}, fix: [rx, ry, rz]}}
-  - {{where: {{box: {{min: [0.3, -1, -1], max: [1, 1, 1]}}}}, force: [500, -100, 50], history: {{sine: {{frequency: 400 Hz}}}}}}
-  - {{where: {{box: {{min: [0.1, 0.03, -1], max: [0.2, 1, 1]}}}}, pressure: 2e5, history: {{sine: {{frequency: 500 Hz}}}}}}
+  - {{where: {{box: {{min: [0.3, -1, -1], max: [1, 1, 1]}}}}, force: [500, -100, 50],
+      history: {{sine: {{frequency: 400 Hz}}}}}}
+  - {{where: {{box: {{min: [0.1, 0.03, -1], max: [0.2, 1, 1]}}}}, pressure: 2e5,
+      history: {{sine: {{frequency: 500 Hz}}}}}}
   - {{where: {{body: tip}}, acceleration: [0, 0, 300]}}
 measure:
   - {{name: energy, every: 2e-4 s, energy: all}}
@@ -95,7 +102,8 @@ class Budget(cli.Case):
         self.assertLess(max(map(abs, e["balance"])), part * size)
 
     def test_moving_wall(self):
-        """A floor that tilts to and fro under balls which stick, slip and roll: every term of the account takes part."""
+        """A floor that tilts to and fro under balls which stick, slip and roll:
+        every term of the account takes part."""
         e = self.budget(
             [1, 3],
             law=ALL,
@@ -112,9 +120,11 @@ class Budget(cli.Case):
         self.assertEqual(set(e["removed"]), {0.0})
 
     def test_wall_that_turns_in_itself(self):
-        """Without friction it does no work, to a higher order than that of a step; with friction it does, and that closes."""
+        """Without friction it does no work, to a higher order than that of a step;
+        with friction it does, and that closes."""
         drum = """
-  - {name: drum, material: wall, surface: {cylinder: {from: [0, -1, 0], to: [0, 1, 0], radius: 0.06, inside: true}},
+  - {name: drum, material: wall,
+      surface: {cylinder: {from: [0, -1, 0], to: [0, 1, 0], radius: 0.06, inside: true}},
      motion: {rotation: {center: [0, 0, 0], axis: [0, 1, 0], rate: 300 rpm}}}
   - {name: front, material: wall, surface: {plane: {point: [0, -0.01, 0], normal: [0, 1, 0]}}}
   - {name: back, material: wall, surface: {plane: {point: [0, 0.05, 0], normal: [0, -1, 0]}}}"""
@@ -134,8 +144,11 @@ class Budget(cli.Case):
             end=0.2,
             domain="{remove_outside: true, box: " + box + "}",
             walls="""
-  - {name: pipe, material: wall, surface: {cylinder: {from: [0.02, 0.02, -0.1], to: [0.02, 0.02, 0.4], radius: 0.03, inside: true}}}
-  - {name: gate, material: wall, surface: {rectangle: {center: [0.02, 0.02, 0], normal: [0, 0, 1], size: [0.1, 0.1]}},
+  - {name: pipe, material: wall,
+      surface: {cylinder: {from: [0.02, 0.02, -0.1], to: [0.02, 0.02, 0.4],
+        radius: 0.03, inside: true}}}
+  - {name: gate, material: wall,
+      surface: {rectangle: {center: [0.02, 0.02, 0], normal: [0, 0, 1], size: [0.1, 0.1]}},
      motion: {remove_at: 0.05 s}}""",
         )
         self.closes(e, 1e-3)
@@ -161,7 +174,8 @@ class Budget(cli.Case):
         )  # further than two periods
 
     def test_lattice(self):
-        """A bar that is shaken at its base, pulled, pressed, pushed and damped: the balance closes at second order, and is that of the record."""
+        """A bar that is shaken at its base, pulled, pressed, pushed and damped: the balance closes
+        at second order, and is that of the record."""
         coarse, fine = (
             self.budget([1, 3] if dt == 1e-6 else [1], scene=LATTICE, dt=dt, scheme="leapfrog")
             for dt in (2e-6, 1e-6)

@@ -3,9 +3,10 @@
 
 #include "particle/generate.h"
 
-static struct elements_host *read_csv(const char *text, char **path, struct scene_errors *errors)
+static struct elements_host *read_bytes(
+    const char *text, size_t size, char **path, struct scene_errors *errors)
 {
-    *path = scratch_file(text, strlen(text));
+    *path = scratch_file(text, size);
     struct element_group group = {.name = "grains",
         .from_file = true,
         .file = *path,
@@ -14,6 +15,11 @@ static struct elements_host *read_csv(const char *text, char **path, struct scen
         .angular_velocity = {4, 5, 6}};
     struct scene scene = {.path = "scene.yaml", .group = &group, .n_group = 1};
     return generate_elements(&scene, errors);
+}
+
+static struct elements_host *read_csv(const char *text, char **path, struct scene_errors *errors)
+{
+    return read_bytes(text, strlen(text), path, errors);
 }
 
 static void test_columns_in_any_order(void **unused)
@@ -36,11 +42,11 @@ static void test_columns_in_any_order(void **unused)
 }
 
 /* Every message must be path + one of the expected, in order. */
-static void refuse(const char *text, const char *const *expected, int n)
+static void refuse_bytes(const char *text, size_t size, const char *const *expected, int n)
 {
     struct scene_errors errors = {0};
     char *path;
-    assert_null(read_csv(text, &path, &errors));
+    assert_null(read_bytes(text, size, &path, &errors));
     assert_int_equal(errors.n, n);
     for (int k = 0; k < n; k++) {
         assert_memory_equal(errors.text[k], path, strlen(path));
@@ -48,6 +54,29 @@ static void refuse(const char *text, const char *const *expected, int n)
     }
     scene_errors_free(&errors);
     scratch_remove(path);
+}
+
+static void refuse(const char *text, const char *const *expected, int n)
+{
+    refuse_bytes(text, strlen(text), expected, n);
+}
+
+/* As in the tail of a file that was not whole on disk when the power failed: no row is lost without
+ * a word. */
+static void test_nul(void **unused)
+{
+    (void)unused;
+#define NUL ": NUL byte: this is no text, or damaged"
+    static const char inside[] = "x,y,z,radius\n1,2,3,1\n4,5\0,6,1\n7,8,9,1\0\n",
+                      tail[] = "x,y,z,radius\n1,2,3,1\n\0\0\0\0\0\0\0\0",
+                      row[] = "x,y,z,radius\n1,2,3,1\n\0\0\0\0\n4,5,6,1\n",
+                      header[] = "x,y,z,radius\0\n1,2,3,1\n",
+                      wide[] = "\xff\xfex\0,\0y\0,\0z\0\n\0";
+    refuse_bytes(inside, sizeof inside - 1, (const char *const[]){":3:4" NUL, ":4:8" NUL}, 2);
+    refuse_bytes(tail, sizeof tail - 1, (const char *const[]){":3:1" NUL}, 1);
+    refuse_bytes(row, sizeof row - 1, (const char *const[]){":3:1" NUL}, 1);
+    refuse_bytes(header, sizeof header - 1, (const char *const[]){":1:13" NUL}, 1);
+    refuse_bytes(wide, sizeof wide - 1, (const char *const[]){":1:4" NUL}, 1);
 }
 
 static void test_values(void **unused)
@@ -112,7 +141,7 @@ static void test_missing_file(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_columns_in_any_order),
-        cmocka_unit_test(test_values), cmocka_unit_test(test_header), cmocka_unit_test(test_many),
-        cmocka_unit_test(test_missing_file)};
+        cmocka_unit_test(test_values), cmocka_unit_test(test_nul), cmocka_unit_test(test_header),
+        cmocka_unit_test(test_many), cmocka_unit_test(test_missing_file)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -113,8 +113,9 @@ static void test_count_takes_the_lowest(void **unused)
 static void test_gravity(void **unused)
 {
     (void)unused;
-    const double gravity[5][3] = {{0, 0, 9.81}, {-1, 0, 0}, {0, 5, 0}, {1, 2, -3}, {0, 0, 0}};
-    for (int g = 0; g < 5; g++) {
+    const double gravity[6][3] = {
+        {0, 0, 9.81}, {-1, 0, 0}, {0, 5, 0}, {1, 2, -3}, {0, 0, 0}, {0, -1e-200, 0}};
+    for (int g = 0; g < 6; g++) {
         struct element_group group = fill_group(REGION_BOX);
         group.jitter = 0;
         struct scene scene = fill_scene(&group);
@@ -125,6 +126,7 @@ static void test_gravity(void **unused)
         struct elements_host *some = generate_elements(&scene, &errors);
         double up[3] = {-gravity[g][0], -gravity[g][1], g == 4 ? 1 : -gravity[g][2]},
                top = -HUGE_VAL;
+        if (g == 5) up[1] = 1; /* the direction counts, not the length */
         int64_t n_below = 0;
         for (int64_t i = 0; i < some->n; i++)
             top = fmax(top,

@@ -1,8 +1,10 @@
 #!/usr/bin/python3
-"""test_vectorised COMPILE_FORCE COMPILE_LATTICE some|all: pocl turns the loop over work-items around the contact law into SIMD code, in full width.
+"""test_vectorised COMPILE_FORCE COMPILE_LATTICE some|all: pocl turns the loop over work-items
+around the contact law into SIMD code, in full width.
 
-The force kernels have three loops (load, law, store); the middle one is where the time goes and the only one without vector types, so one loop that
-LLVM reports as vectorised is that one. The lattice has one loop in link_force, and with volume one in link_volume. Skipped (77) where the platform is
+The force kernels have three loops (load, law, store); the middle one is where the time goes and the
+only one without vector types, so one loop that LLVM reports as vectorised is that one. The lattice
+has one loop in link_force, and with volume one in link_volume. Skipped (77) where the platform is
 not pocl or its LLVM says nothing about loops."""
 import os
 import pathlib
@@ -79,6 +81,7 @@ for kernel, precision, features in CASES if sys.argv[3] == "all" else SOME:
     good = sum(w >= wanted for w in widths) >= 1 + (kernel == "lattice" and "volume" in features)
     failed += not good
     print(
-        f"{'ok    ' if good else 'FAILED'} {kernel} {precision} {' '.join(features)}: widths {widths}, wanted {wanted}"
+        f"{'ok    ' if good else 'FAILED'} {kernel} {precision} {' '.join(features)}: widths "
+        f"{widths}, wanted {wanted}"
     )
 sys.exit(1 if failed else 0)

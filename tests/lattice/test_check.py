@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""What `check` says of the plate (numbers from its keys), on one rank and on two, and that its resolved text says the same."""
+"""What `check` says of the plate (numbers from its keys), on one rank and on two, and that its
+resolved text says the same."""
 import math
 import os
 import sys

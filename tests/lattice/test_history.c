@@ -106,9 +106,9 @@ static void table(void **unused)
     }
 }
 
-static void expect_file(const char *text, const char *problem, int n)
+static void expect_bytes(const char *text, size_t bytes, const char *problem, int n)
 {
-    char *path = scratch_file(text, strlen(text)), *expected = NULL;
+    char *path = scratch_file(text, bytes), *expected = NULL;
     struct history h = {0};
     char *found = history_read(&h, path);
     if (problem) {
@@ -128,9 +128,16 @@ static void expect_file(const char *text, const char *problem, int n)
     scratch_remove(path);
 }
 
+static void expect_file(const char *text, const char *problem, int n)
+{
+    expect_bytes(text, strlen(text), problem, n);
+}
+
 static void files(void **unused)
 {
     (void)unused;
+    expect_bytes("0,1\n\0\0\0\0", 8, "2:1: NUL byte: this is no text, or damaged", 0);
+    expect_bytes("0,1\n1,2\0\n2,3\n", 13, "2:4: NUL byte: this is no text, or damaged", 0);
     expect_file("0,1\n1e-3,-2.5\n", NULL, 2);
     expect_file("time,factor\n\n 0 , 1 \r\n1e-3,-2.5\n2,0", NULL, 3);
     expect_file("time,factor\ntime,factor\n", "2: the time is not a number", 0);

@@ -1,7 +1,9 @@
 #!/usr/bin/python3
-"""The limit in a run: a bonded chain, whose true limit is known, blows up 5 % over it and does not 5 % below it; a step over it is refused.
+"""The limit in a run: a bonded chain, whose true limit is known, blows up 5 % over it and does not
+5 % below it; a step over it is refused.
 
-Free chain of N masses m on springs k: w_max = 2 (k/m)^(1/2) sin((N - 1) pi/(2 N)), dt = 2/w_max; the bound is (m/k)^(1/2), 0.08 % less at N = 40."""
+Free chain of N masses m on springs k: w_max = 2 (k/m)^(1/2) sin((N - 1) pi/(2 N)), dt = 2/w_max;
+the bound is (m/k)^(1/2), 0.08 % less at N = 40."""
 import csv
 import math
 import os
@@ -67,7 +69,8 @@ class Chain(cli.Case):
         self.assertEqual(done.code, 5, done.err)
         text = "\n".join(done.err)
         found = re.search(
-            r"time step ([\d.e-]+) s exceeds the critical time step ([\d.e-]+) s, set by the contacts of element (\d+)",
+            r"time step ([\d.e-]+) s exceeds the critical time step ([\d.e-]+) s, set by the "
+            r"contacts of element (\d+)",
             text,
         )
         self.assertTrue(found, text)

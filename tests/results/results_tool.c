@@ -91,7 +91,7 @@ static void record(const struct comm *comm, const char *dir, const char *limited
     struct log *log = log_create(comm, false);
     log_print(log, "before the folder");
     if (limited && !strcmp(limited, "log.txt")) limit_files("0");
-    log_attach(log, dir, false);
+    log_attach(log, dir, false, "");
     log_print(log, "%d elements", 17);
     struct log_progress progress = {0, 1000, 0, 1e-2, 50000};
     for (; progress.step <= progress.n_step; progress.step++, progress.time += 1e-5)

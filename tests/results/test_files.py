@@ -1,7 +1,8 @@
 #!/usr/bin/python3
-"""Results on disk as a user and VTK 9.1 meet them: frames, folders, records; and what is left, said and returned when the disk does not play along.
+"""Results on disk as a user and VTK 9.1 meet them: frames, folders, records; and what is left, said
+and returned when the disk does not play along.
 
-Arguments: Frames, Folders or Record (the tests to run), results_tool, mpirun, its arguments. Called by meson."""
+Arguments: Frames, Folders or Record (the tests to run), results_tool, mpirun. Called by meson."""
 import csv
 import json
 import math
@@ -14,15 +15,14 @@ import sys
 import tempfile
 import unittest
 
-TOOL, MPIRUN, MPIRUN_ARGS = None, None, []
+TOOL, MPIRUN = None, None
 FRAME = "frame_000007.hdf"
 
 
 def tool(n_rank, *args):
-    """Runs results_tool on n_rank ranks (one: without mpirun); no result within a minute is a hang."""
-    command = (
-        [TOOL, *args] if n_rank == 1 else [MPIRUN, *MPIRUN_ARGS, "-n", str(n_rank), TOOL, *args]
-    )
+    """Runs results_tool on n_rank ranks (one: without mpirun);
+    no result within a minute is a hang."""
+    command = [TOOL, *args] if n_rank == 1 else [MPIRUN, "-n", str(n_rank), TOOL, *args]
     return subprocess.run(command, capture_output=True, text=True, timeout=60)
 
 
@@ -239,7 +239,8 @@ class Folders(Folder):
         self.assertEqual(self.get("other/scene.yaml"), "title: of the user\n")
 
     def test_somebody_elses_series_is_kept(self):
-        """It may be what the scene reads: a CSV with the name of a measure, in a folder without a run."""
+        """It may be what the scene reads: a CSV with the name of a measure,
+        in a folder without a run."""
         self.put("data/outflow.csv", "mine")
         run = tool(2, "folder", self.path("data"), self.scene)
         self.assertEqual((run.returncode, len(errors(run))), (2, 1), run.stderr)
@@ -311,10 +312,11 @@ class Record(Folder):
         self.assertRegex(lines[-2], r" million element updates/s  \S+ s left\Z")
 
     def test_terminal_gets_one_line(self):
-        """On a terminal the progress line is rewritten: wiped before other output, never scrolled."""
+        """On a terminal the progress line is rewritten: wiped before other output,
+        never scrolled."""
         for command in (
             [TOOL, "record", self.dir],
-            [MPIRUN, *MPIRUN_ARGS, "-n", "2", TOOL, "record", self.dir],
+            [MPIRUN, "-n", "2", TOOL, "record", self.dir],
         ):
             run = subprocess.run(
                 ["script", "-qec", shlex.join(command), "/dev/null"],
@@ -354,5 +356,5 @@ class Record(Folder):
 
 
 if __name__ == "__main__":
-    TOOL, MPIRUN, MPIRUN_ARGS = sys.argv[2], sys.argv[3], sys.argv[4:]
+    TOOL, MPIRUN = sys.argv[2:4]
     unittest.main(argv=sys.argv[:2], verbosity=2)

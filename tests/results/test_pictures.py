@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""scripts/render.py and scripts/plot.py: walls where and when they are, spheres of their size and colour, pictures and films of a run.
+"""scripts/render.py and scripts/plot.py: walls where and when they are, spheres of their size and
+colour, pictures and films of a run.
 
 Argument: results_tool. Called by meson."""
 import math
@@ -192,7 +193,8 @@ class Drawing(unittest.TestCase):
             )  # from -y or from +x: the other axis points to the right
 
     def test_flat_things_are_seen_from_above_a_corner(self):
-        """The longer side points to the right, the corner of lowest x and y, or of largest x and lowest y, to the eye."""
+        """The longer side points to the right, the corner of lowest x and y,
+        or of largest x and lowest y, to the eye."""
         for size, along, nearest in (((1, 1, 0.1), 0, (-1, -1)), ((1, 2, 0.1), 1, (1, -1))):
             right, up, back = render_view.view_axes(numpy.zeros(3), numpy.array(size), None)
             self.assertGreater(right[along], 0.9)

@@ -170,6 +170,34 @@ static void hertz_needs_moduli(void **state)
 #define WALL(rest) "walls: [{name: w, material: w, " rest "}]\n" CONTACT
 #define CONTACT "contacts: [{between: [m, w], " ELASTIC "}]\n"
 
+static void directions(void **state)
+{
+    struct fixture *f = *state;
+#define SHORT "too short for a direction: numbers below 2.2e-308 lose their digits"
+    fixture_expect_one(f,
+        SCENE(ONE WALL("surface: {plane: {point: [0, 0, 0], normal: [0, 0, 1e-310]}}")),
+        "scene.yaml:5:76: walls[0].surface.plane.normal: " SHORT);
+    fixture_expect_one(f,
+        SCENE(ONE WALL("surface: {rectangle: {center: [0, 0, 0], normal: [1e-320, 0, 0], size: [1, "
+                       "1]}}")),
+        "scene.yaml:5:81: walls[0].surface.rectangle.normal: " SHORT);
+    fixture_expect_one(f,
+        SCENE(ONE WALL("surface: {plane: {point: [0, 0, 0], normal: [0, 0, 1]}}, motion: "
+                       "{rotation: {center: [0, 0, 0], axis: [0, 1e-309, 0], rate: 1}}")),
+        "scene.yaml:5:134: walls[0].motion.rotation.axis: " SHORT);
+#define NO_LENGTH "from and to are less than 1e-12 radii from each other, which is no length"
+    fixture_expect_one(f,
+        SCENE(ONE WALL("surface: {cylinder: {from: [0, 0, 0], to: [0, 0, 1e-200], radius: 1}}")),
+        "scene.yaml:5:52: walls[0].surface.cylinder: " NO_LENGTH);
+    fixture_expect_one(f,
+        SCENE(ONE WALL("surface: {cylinder: {from: [0, 0, 0], to: [0, 1e-14, 0], radius: 0.1}}")),
+        "scene.yaml:5:52: walls[0].surface.cylinder: " NO_LENGTH);
+    fixture_expect_one(f,
+        SCENE(
+            ONE WALL("surface: {cylinder: {from: [-1e308, 0, 0], to: [1e308, 0, 0], radius: 1}}")),
+        "scene.yaml:5:52: walls[0].surface.cylinder: from and to are too far from each other");
+}
+
 static void walls_and_regions(void **state)
 {
     struct fixture *f = *state;
@@ -281,6 +309,7 @@ int main(void)
         TEST(elements_from_nowhere),
         TEST(contacts),
         TEST(hertz_needs_moduli),
+        TEST(directions),
         TEST(walls_and_regions),
         TEST(names_and_domain),
         TEST(too_many_steps),

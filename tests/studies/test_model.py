@@ -117,7 +117,8 @@ class Model(unittest.TestCase):
         self.assertAlmostEqual(rows[1][13], 50 * 4050 / 4735)
 
     def test_surface(self):
-        """Eight ranks by the surface: cubes of half the edge, three faces where two ranks have 6 (1 - 2^(-1/3)) = 1.23780."""
+        """Eight ranks by the surface: cubes of half the edge,
+        three faces where two ranks have 6 (1 - 2^(-1/3)) = 1.23780."""
         t = model.traffic_at(8, 125, self.records, self.rates)
         self.assertAlmostEqual(t.bytes, 2000 * 0.39685026 * 3 / 1.2377968, places=3)
         self.assertAlmostEqual(t.boundary, 50 * 0.39685026 * 3 / 1.2377968, places=4)
@@ -165,7 +166,8 @@ class Model(unittest.TestCase):
             self.assertEqual((run.returncode, run.stderr), (0, ""))
             with open(os.path.join(out, "check.csv")) as file:
                 rows = [line.strip().split(",") for line in file][1:]
-            # One rank: its parts add up. Two: 7 * 400 us + 3,300 us + 1,000 us; 1 - 2.2 us of exchange are hidden.
+            # One rank: its parts add up. Two: 7 * 400 us + 3,300 us + 1,000 us;
+            # 1 - 2.2 us of exchange are hidden.
             self.assertEqual(
                 [[round(float(v), 6) for v in row[2:4]] for row in rows],
                 [[10000, 10000], [7100, 6000]],

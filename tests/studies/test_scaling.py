@@ -73,7 +73,8 @@ class Scaling(unittest.TestCase):
             self.assertGreater(os.path.getsize(os.path.join(self.out, "scaling.png")), 10000)
 
     def test_results(self):
-        """From the frame of a run on, on several numbers of ranks: to what that run would have come to."""
+        """From the frame of a run on, on several numbers of ranks:
+        to what that run would have come to."""
         with tempfile.TemporaryDirectory() as folder:
             whole = self.study(folder, "--steps", "20", "--ranks", "1", "--program", DEMOCLES)
             self.assertEqual(whole.returncode, 0, whole.stderr)
@@ -97,7 +98,8 @@ class Scaling(unittest.TestCase):
             program = os.path.join(folder, "program")
             with open(program, "w") as file:
                 file.write(
-                    f'#!/bin/sh\n[ "${{OMPI_COMM_WORLD_SIZE:-${{PMI_SIZE:-1}}}}" = 2 ] && set -- "$@" --steps 7\nexec "{DEMOCLES}" "$@"\n'
+                    f'#!/bin/sh\n[ "${{OMPI_COMM_WORLD_SIZE:-${{PMI_SIZE:-1}}}}" = 2 ] && set -- '
+                    f'"$@" --steps 7\nexec "{DEMOCLES}" "$@"\n'
                 )
             os.chmod(program, 0o755)
             run = self.study(folder, "--ranks", "1,2", "--program", program)

@@ -6,7 +6,7 @@ import sys
 import tempfile
 import unittest
 
-DEMOCLES, MPIRUN, MPIRUN_ARGS = None, None, []
+DEMOCLES, MPIRUN = None, None
 
 
 def own_lines(err):
@@ -26,8 +26,9 @@ class Result:
 
 
 def launch(parts, cwd=None, env=None, stdout=subprocess.PIPE):
-    """parts: [(ranks, arguments)]; one part with one rank runs without mpirun. No result within a minute is a hang."""
-    command = [] if parts[0][0] == 1 and len(parts) == 1 else [MPIRUN, *MPIRUN_ARGS]
+    """parts: [(ranks, arguments)]; one part with one rank runs without mpirun.
+    No result within a minute is a hang."""
+    command = [] if parts[0][0] == 1 and len(parts) == 1 else [MPIRUN]
     for k, (ranks, args) in enumerate(parts):
         command += [":"] * (k > 0) + (["-n", str(ranks)] if command else []) + [DEMOCLES, *args]
     return Result(
@@ -60,11 +61,7 @@ class Case(unittest.TestCase):
 
 
 def main(first=1):
-    """Arguments from the first on: democles, mpirun, its arguments; before them: the class of tests, else all."""
-    global DEMOCLES, MPIRUN, MPIRUN_ARGS
-    DEMOCLES, MPIRUN, MPIRUN_ARGS = (
-        os.path.abspath(sys.argv[first]),
-        sys.argv[first + 1],
-        sys.argv[first + 2 :],
-    )
+    """Arguments from the first on: democles, mpirun; before them: the class of tests, else all."""
+    global DEMOCLES, MPIRUN
+    DEMOCLES, MPIRUN = os.path.abspath(sys.argv[first]), sys.argv[first + 1]
     unittest.main(argv=sys.argv[:first], module="__main__")

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
-"""Small scenes in oclgrind, a simulated device that reports data races, reads of what was never written, accesses out of bounds, and wrong calls of
-the API: it says nothing, and the bits are those of the processor. Own arguments: the library oclgrind_memory, the folder of kernels, the tests."""
+"""Small scenes in oclgrind, a simulated device that reports data races, reads of what was never
+written, accesses out of bounds, and wrong calls of the API: it says nothing, and the bits are those
+of the processor. Own arguments: the library oclgrind_memory, the folder of kernels, the tests."""
 import os
 import pathlib
 import shutil
@@ -12,7 +13,8 @@ import yaml
 import parallel_runs
 
 HANG = 1100  # [s]; a thousand times slower than a processor
-# Its compiler's optimiser makes instructions that it does not know (llvm.usub.sat, shuffles with undefined lanes), and so does forced inlining.
+# Its compiler's optimiser makes instructions that it does not know (llvm.usub.sat, shuffles with
+# undefined lanes), and so does forced inlining.
 OPTIONS = [
     "--data-races",
     "--uninitialized",
@@ -106,7 +108,7 @@ class Oclgrind(parallel_runs.Case):
             'LD_PRELOAD="$0:$LD_PRELOAD" exec "$@"',
             memory,
         ]  # before the libraries that oclgrind preloads itself
-        command = [parallel_runs.MPIRUN, *parallel_runs.MPIRUN_ARGS] if ranks > 1 else []
+        command = [parallel_runs.MPIRUN] if ranks > 1 else []
         for rank in range(ranks):
             command += (
                 [":"] * (rank > 0)
@@ -165,7 +167,8 @@ class Oclgrind(parallel_runs.Case):
         self.rebuilt("mixed", 2, "--set", "partition.boundary=assigned")
 
     def test_long_rows(self):
-        """Elements so fast that all of them may meet: rows that are searched twice and sorted by heap."""
+        """Elements so fast that all of them may meet:
+        rows that are searched twice and sorted by heap."""
         record = self.is_clean(
             self.scene("apart"),
             1,
@@ -179,7 +182,8 @@ class Oclgrind(parallel_runs.Case):
         self.assertGreater(2 * record["interactions"] / record["elements"], 48)
 
     def test_lattice_on_two_ranks(self):
-        """Every feature of the lattice but Runge-Kutta, and links that break at once: of the glue, and where it meets steel."""
+        """Every feature of the lattice but Runge-Kutta, and links that break at once:
+        of the glue, and where it meets steel."""
         path = os.path.join(self.dir, "lattice.yaml")
         with open(path, "w") as file:
             yaml.safe_dump(LATTICE, file)

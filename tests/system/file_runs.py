@@ -26,7 +26,8 @@ measure: [{name: m, energy: all, every: 1e-4}]
 LATTICE = """method: lattice
 time: {end: 1e-4, step: 1e-6}
 materials: {a: {density: 2500, young: 1e9, poisson: 0.2}}
-bodies: [{name: b, material: a, cell: 0.01, shape: {box: {min: [0, 0, 0], max: [0.03, 0.03, 0.03]}}}]
+bodies: [{name: b, material: a, cell: 0.01,
+  shape: {box: {min: [0, 0, 0], max: [0.03, 0.03, 0.03]}}}]
 output: {every: 5e-5}
 measure: [{name: m, energy: all, every: 1e-5}]
 """

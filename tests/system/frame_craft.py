@@ -156,7 +156,8 @@ BAD_IDS, BAD_REALS = (-1, 10**9, 2**40, -(2**63)), (float("nan"), float("inf"))
 
 
 def contents(tables):
-    """Named changes of the rows; tables: table -> its columns of numbers of elements and of reals."""
+    """Named changes of the rows;
+    tables: table -> its columns of numbers of elements and of reals."""
     found = {}
     for table, (ids, reals) in tables.items():
         for column in ids:

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Damaged and crafted frames: a run that goes on says which cannot be used, takes the one before or
-ends with code 6, and never crashes; nor do the Python tools. Own arguments: results_tool, the tests,
-or nothing: some of each kind. DEMOCLES_SEED changes what is random."""
+ends with code 6, and never crashes; nor do the Python tools. Own arguments: results_tool, the
+tests, or nothing: some of each kind. DEMOCLES_SEED changes what is random."""
 import os
 import random
 import resource
@@ -34,7 +34,8 @@ class Case(robust_jobs.Case):
         print(f"{self.id()}: {self.done}", file=sys.stderr)
 
     def whole(self, content, steps, *args):
-        """A folder with frames, the newest last, and the digest of a step that none of them is of."""
+        """A folder with frames, the newest last,
+        and the digest of a step that none of them is of."""
         self.args = ["--steps", str(steps)]
         run = self.good_run(self.put(content), 1, *args, *self.args, name="whole")
         self.digest, self.frame = run.record()["digest"], run.frames()[-1]
@@ -77,7 +78,8 @@ class Case(robust_jobs.Case):
         return run.returncode
 
     def use(self, files, names, must_refuse):
-        """Resumes from the newest of these until all have been met. What is used must give the digest."""
+        """Resumes from the newest of these until all have been met.
+        What is used must give the digest."""
         while files:
             out, _ = self.folder(files)
             run = self.resume(out)

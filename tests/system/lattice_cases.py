@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""The cases of the lattice on many ranks, briefly, and the way to rest: the same bits, and what happens where there is none. Own arguments: names of
-tests."""
+"""The cases of the lattice on many ranks, briefly, and the way to rest: the same bits, and what
+happens where there is none. Own arguments: names of tests."""
 import os
 
 import parallel_runs
@@ -53,7 +53,8 @@ class Cases(parallel_runs.Case):
         self.assertLess(rest["left"], 1e-9)
 
     def test_no_rest(self):
-        """Too early an end, or something that is led for ever: exit code 5, with the last frame and the record."""
+        """Too early an end, or something that is led for ever: exit code 5,
+        with the last frame and the record."""
         for args in (
             ("time.end=0.1ms",),
             ("time.end=0.3ms", "boundaries[0]={where: all, velocity: [free, free, 1]}"),

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""The lattice through the program: the same bits on any number of ranks, closed forms, what is refused. Own arguments: `some` or
-`all` of the precisions and ranks, names of tests."""
+"""The lattice through the program: the same bits on any number of ranks, closed forms, what is
+refused. Own arguments: `some` or `all` of the precisions and ranks, names of tests."""
 import csv
 import math
 import os
@@ -139,7 +139,8 @@ class Lattice(parallel_runs.Case):
                         self.assertTrue(n == 1 or record["halo_bytes_per_step"] > 0)
 
     def test_breakage(self):
-        """The same bits, counts and broken links on any number of ranks; frames, series and record agree."""
+        """The same bits, counts and broken links on any number of ranks; frames,
+        series and record agree."""
         pairs = (
             ("double", "leapfrog", (1, 3, 4)),
             ("double", "rk4", (1, 3)),
@@ -188,9 +189,10 @@ class Lattice(parallel_runs.Case):
                     self.assertGreater(sum(counted), 10)
 
     def test_free_chain_rings(self):
-        """A row of cells between two ends that start with opposite velocities: mode k = 1 of the free chain, w = 2 sqrt(kn/m) sin(pi/(2 N)), whose
-        velocities at the start, cos(pi (i + 1/2)/N), are given cell by cell. With z = w dt the phase is off by z^2/24 (leapfrog), z^4/120 (rk4) of
-        itself: 5.2e-4, 1.0e-7 after two periods of 200 steps; pefrl by less."""
+        """A row of cells between two ends that start with opposite velocities: mode k = 1 of the
+        free chain, w = 2 sqrt(kn/m) sin(pi/(2 N)), whose velocities at the start, cos(pi (i +
+        1/2)/N), are given cell by cell. With z = w dt the phase is off by z^2/24 (leapfrog),
+        z^4/120 (rk4) of itself: 5.2e-4, 1.0e-7 after two periods of 200 steps; pefrl by less."""
         n, h, young, density = 8, 0.01, 2e9, 1000
         stiffness, mass = young * h, density * h**3
         w = 2 * math.sqrt(stiffness / mass) * math.sin(math.pi / (2 * n))
@@ -223,7 +225,8 @@ class Lattice(parallel_runs.Case):
             self.assertLess(worst, least, scheme)
 
     def test_free_flight_and_spin(self):
-        """A stiff cube that flies and turns keeps its velocity and axis; frames show hexahedra of the right size, wherever it has turned to."""
+        """A stiff cube that flies and turns keeps its velocity and axis; frames show hexahedra of
+        the right size, wherever it has turned to."""
         spin = numpy.array([300.0, -200.0, 100.0])
         scene = {
             "title": "flight",
@@ -260,7 +263,8 @@ class Lattice(parallel_runs.Case):
         self.assertEqual(sorted(last.field("id").tolist()), list(range(8)))
 
     def test_probes(self):
-        """A probe's rotation and stress are those of the frame at the same cell, and have the same bits on any number of ranks."""
+        """A probe's rotation and stress are those of the frame at the same cell, and have the same
+        bits on any number of ranks."""
         fields = ["von_mises", "rotation", "stress"]
         for rotation, turn in (("finite", "wxyz"), ("small", "xyz")):
             scene, alone = block("leapfrog"), None

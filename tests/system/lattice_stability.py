@@ -1,6 +1,7 @@
 #!/usr/bin/python3
-"""A struck block at 0.99 of the time step's limit stays bounded, and at 1.05 of it blows up with exit code 5 and a message that names the step: each
-scheme, and those that take damping of links with both dampings too. Arguments of parallel_runs.py."""
+"""A struck block at 0.99 of the time step's limit stays bounded, and at 1.05 of it blows up with
+exit code 5 and a message that names the step: each scheme, and those that take damping of links
+with both dampings too. Arguments of parallel_runs.py."""
 import math
 import os
 
@@ -8,10 +9,12 @@ import yaml
 
 import parallel_runs
 
-# Long enough for what grows by a third per step or more to leave the range of doubles, from rounding on; shocks excite all frequencies.
+# Long enough for what grows by a third per step or more to leave the range of doubles, from
+# rounding on; shocks excite all frequencies.
 STEPS = 4000
 EDGE, CELLS = 0.01, 16
-# [s] 0.1 and 2 of the critical ratio at the highest frequency. For rk4 the limit is exact above 1, and a safe bound below (lattice_limit.c).
+# [s] 0.1 and 2 of the critical ratio at the highest frequency. For rk4 the limit is exact above 1,
+# and a safe bound below (lattice_limit.c).
 ETA = {"leapfrog": 1e-7, "rk4": 2e-6}
 DAMPING = {
     "leapfrog": ("none", "mass", "link"),

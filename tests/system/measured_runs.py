@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""What a frame and a measure say of contacts, against closed forms; the same bits on any number of ranks. Own arguments: names of tests."""
+"""What a frame and a measure say of contacts, against closed forms; the same bits on any number of
+ranks. Own arguments: names of tests."""
 import csv
 import os
 
@@ -53,9 +54,11 @@ class Measured(parallel_runs.Case):
             return numpy.array([[float(v) for v in row] for row in list(csv.reader(file))[1:]])
 
     def test_torque(self):
-        """A sphere on a plate that turns, off its axis. It lies at the overlap that bears its weight, so N = m g, and slides at once, since the
-        tangential spring has stretched by v dt = 1e-5 m >> mu N/k_t. The force F on the plate acts at the contact c, at the end of the sphere's
-        lever: the torque about P is (c - P) x F, and about the axis -mu m g d but for the way 1/2 mu g t^2 that the sphere has gone.
+        """A sphere on a plate that turns, off its axis.
+        It lies at the overlap that bears its weight, so N = m g, and slides at once, since the
+        tangential spring has stretched by v dt = 1e-5 m >> mu N/k_t. The force F on the plate acts
+        at the contact c, at the end of the sphere's lever: the torque about P is (c - P) x F, and
+        about the axis -mu m g d but for the way 1/2 mu g t^2 that the sphere has gone.
         """
         radius, density, k, mu, g, d, rate, dt = 0.01, 2500, 1e5, 0.3, 9.81, 0.1, 5.0, 2e-5
         weight = density * 4 / 3 * numpy.pi * radius**3 * g
@@ -111,7 +114,8 @@ class Measured(parallel_runs.Case):
         self.assertLess(abs(axis[:, 2] / (weight * d) - 1).max(), gone)
 
     def test_torque_on_ranks(self):
-        """A column that falls into a trough: the same bits on any number of ranks, and of a wall without friction too."""
+        """A column that falls into a trough: the same bits on any number of ranks,
+        and of a wall without friction too."""
         scene, _ = parallel_scenes.column(parallel_runs.CASES)
         every = scene["time"]["step"] * 10
         scene["measure"] = [

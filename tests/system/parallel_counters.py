@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Within a step the state stays on the device: nothing is allocated, and between host and device go the two flags and, on several ranks, ghosts."""
+"""Within a step the state stays on the device: nothing is allocated, and between host and device go
+the two flags and, on several ranks, ghosts."""
 import parallel_runs
 
 FLAGS = 8  # [byte] two ints, read after some drifts

@@ -1,8 +1,10 @@
 #!/usr/bin/python3
-"""The same bits on any number of ranks: state, contacts with their histories, measures. Own arguments: `some` or `all`, the scenes."""
+"""The same bits on any number of ranks: state, contacts with their histories, measures.
+Own arguments: `some` or `all`, the scenes."""
 import parallel_runs
 
-# With `some` one precision for each scene: that in which resume_runs.py runs it too, if it does, so that kernels are compiled once for both.
+# With `some` one precision for each scene: that in which resume_runs.py runs it too, if it does, so
+# that kernels are compiled once for both.
 SOME = {
     "funnel": "mixed",
     "gas_x": "mixed",

@@ -1,5 +1,5 @@
-"""Runs of the program and what they leave, for the tests of parallel runs. Arguments of each test: democles, mpirun, the folder of cases, own ones,
-then `--` and the arguments of mpirun."""
+"""Runs of the program and what they leave, for the tests of parallel runs.
+Arguments of each test: democles, mpirun, the folder of cases, own ones."""
 import glob
 import json
 import os
@@ -15,12 +15,12 @@ sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."
 from democles import frames, mpi  # noqa: E402
 
 HANG = 240  # seconds after which a run counts as hanging: minutes, for the machine may be busy
-DEMOCLES, MPIRUN, CASES, OWN, MPIRUN_ARGS = None, None, None, [], []
+DEMOCLES, MPIRUN, CASES, OWN = None, None, None, []
 
 
 def command(ranks, *args):
     """One rank runs without mpirun."""
-    return [*([MPIRUN, *MPIRUN_ARGS, "-n", str(ranks)] if ranks > 1 else []), DEMOCLES, *args]
+    return [*([MPIRUN, "-n", str(ranks)] if ranks > 1 else []), DEMOCLES, *args]
 
 
 class Run:
@@ -96,12 +96,7 @@ class Case(unittest.TestCase):
 
 def main(own=None):
     """own: how many arguments the test has itself; more are names of the tests to run."""
-    global DEMOCLES, MPIRUN, CASES, OWN, MPIRUN_ARGS
-    split = sys.argv.index("--")
-    DEMOCLES, MPIRUN, CASES, *OWN = sys.argv[1:split]
-    DEMOCLES, CASES, MPIRUN_ARGS = (
-        os.path.abspath(DEMOCLES),
-        os.path.abspath(CASES),
-        sys.argv[split + 1 :],
-    )
+    global DEMOCLES, MPIRUN, CASES, OWN
+    DEMOCLES, MPIRUN, CASES, *OWN = sys.argv[1:]
+    DEMOCLES, CASES = os.path.abspath(DEMOCLES), os.path.abspath(CASES)
     unittest.main(argv=sys.argv[:1] + (OWN[own:] if own is not None else []), module="__main__")

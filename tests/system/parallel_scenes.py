@@ -1,6 +1,8 @@
-"""Small scenes that between them use every part of the particle method that depends on who owns what: for the tests of the parallel runs.
+"""Small scenes that between them use every part of the particle method that depends on who owns
+what: for the tests of the parallel runs.
 
-Each is written into a folder by `put`: scene.yaml and what it reads. Steps are few and rebuilds many, so that elements change hands all the time."""
+Each is written into a folder by `put`: scene.yaml and what it reads. Steps are few and rebuilds
+many, so that elements change hands all the time."""
 import math
 import os
 
@@ -106,7 +108,8 @@ def hertz(cases):
 
 
 def gas(axes, n=60, size=(0.05, 0.04, 0.045), radius=0.0025, speed=2.0, steps=800):
-    """Fast spheres in a box that is periodic along some axes and has walls across the others, fixed drift through its faces."""
+    """Fast spheres in a box that is periodic along some axes
+    and has walls across the others, fixed drift through its faces."""
 
     def make(cases):
         # A wall across an axis that does not repeat: two planes.
@@ -144,7 +147,8 @@ def gas(axes, n=60, size=(0.05, 0.04, 0.045), radius=0.0025, speed=2.0, steps=80
 
 
 def shear(cases):
-    """A dense layer between two rough plates that move against each other, periodic along the flow and across it."""
+    """A dense layer between two rough plates that move against each other,
+    periodic along the flow and across it."""
     plates = [
         {
             "name": "bottom",
@@ -180,7 +184,12 @@ def shear(cases):
 
 def three(cases):
     """Fewer elements than ranks: a collision of three, with empty ranks all the time."""
-    rows = "x,y,z,radius,vx,vy,vz\n0,0,0.006,0.005,1,0,0\n0.0105,0.001,0.005,0.005,-1,0,0\n0.005,0.012,0.006,0.006,0,-2,0\n"
+    rows = (
+        "x,y,z,radius,vx,vy,vz\n"
+        "0,0,0.006,0.005,1,0,0\n"
+        "0.0105,0.001,0.005,0.005,-1,0,0\n"
+        "0.005,0.012,0.006,0.006,0,-2,0\n"
+    )
     contact = {"normal": LINEAR, "tangential": FRICTION, "binding": {"force": 1e-2}}
     walls = [{"name": "floor", "surface": {"plane": {"point": [0, 0, 0], "normal": [0, 0, 1]}}}]
     return scene(400, 1e-5, contact, [{"name": "three", "file": "three.csv"}], walls), {
@@ -189,7 +198,8 @@ def three(cases):
 
 
 def thin(cases):
-    """A bed one element thick and few long, some large: subdomains thinner than the halo, ghosts from ranks beyond the next."""
+    """A bed one element thick and few long, some large: subdomains thinner than the halo,
+    ghosts from ranks beyond the next."""
     contact = {"normal": LINEAR, "tangential": FRICTION}
     walls = [box("trough", (0, 0, 0), (0.12, 0.011, 0.05))]
     elements = [
@@ -200,8 +210,8 @@ def thin(cases):
 
 
 def moving(cases):
-    """A shaken box, a turning drum of triangles with its lid gone and back, a cylinder that turns inside; a plate that comes and a plate that
-    goes."""
+    """A shaken box, a turning drum of triangles with its lid gone and back, a cylinder that turns
+    inside; a plate that comes and a plate that goes."""
     walls = [
         {
             "name": "drum",

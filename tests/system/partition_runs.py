@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Who owns what is a choice that changes no bit: methods of partition, periods of repartition, shares that follow measured speed. Own arguments:
-names of tests."""
+"""Who owns what is a choice that changes no bit: methods of partition, periods of repartition,
+shares that follow measured speed. Own arguments: names of tests."""
 import itertools
 import os
 import re
@@ -92,15 +92,16 @@ class Partition(parallel_runs.Case):
         self.assertGreater(dealt["auto"], 0)  # the first is made as soon as it would save anything
 
     def test_periodic(self):
-        """Parts that are not boxes, across faces that repeat; elements of many sizes; some that leave; more ranks than elements."""
+        """Parts that are not boxes, across faces that repeat; elements of many sizes; some that
+        leave; more ranks than elements."""
         for name, ranks in (("gas_xy", 4), ("hertz", 3), ("leaving", 3), ("three", 5)):
             scene = self.scene(name)
             alone = self.found(self.good_run(scene, 1))
             self.check_same(scene, alone, ranks, method="graph", every=10)
 
     def test_assigned(self):
-        """Pairs of two ranks computed on one of them: friction, bonds, rolling, sizes, periodic faces, elements that leave. All ranks together
-        compute what one does alone."""
+        """Pairs of two ranks computed on one of them: friction, bonds, rolling, sizes, periodic
+        faces, elements that leave. All ranks together compute what one does alone."""
         self.assigned(
             ("column", (("geometric", 2, 0), ("graph", 3, 37))),
             ("leaving", (("interactions", 3, 37),)),
@@ -144,7 +145,8 @@ class Partition(parallel_runs.Case):
         self.assertLessEqual(max(float(line[1]) for line in lines), record["imbalance"]["max"])
 
     def test_threshold(self):
-        """Elements are dealt out until the lists that steps go on with are shared out evenly enough, not those of before."""
+        """Elements are dealt out until the lists that steps go on with are shared out evenly
+        enough, not those of before."""
         worst = {}
         for every in (0, 1):
             run = self.good_run(
@@ -157,7 +159,8 @@ class Partition(parallel_runs.Case):
         self.assertLessEqual(worst[1], 0.04)
 
     def unlike_run(self, scene, before, after, *args):
-        """Two ranks, with words of their own before the program and after all others. Returns the record."""
+        """Two ranks, with words of their own before the program
+        and after all others. Returns the record."""
         folder = os.path.join(self.dir, "unlike")
         part = [
             [
@@ -177,7 +180,7 @@ class Partition(parallel_runs.Case):
             for r in range(2)
         ]
         run = subprocess.run(
-            [parallel_runs.MPIRUN, *parallel_runs.MPIRUN_ARGS, *part[0], ":", *part[1]],
+            [parallel_runs.MPIRUN, *part[0], ":", *part[1]],
             cwd=self.dir,
             capture_output=True,
             text=True,
@@ -198,7 +201,8 @@ class Partition(parallel_runs.Case):
             text = file.read()
         self.assertEqual(text.count(begin), 1)
         waste = (
-            "    real waste = (real)e;\n    for (int k = 0; k < 4000; k++) waste = waste * (real)0.999 + (real)1.5;\n"
+            "    real waste = (real)e;\n    for (int k = 0; k < 4000; k++) waste = waste * "
+            "(real)0.999 + (real)1.5;\n"
             "    if (waste < 0) f.s0 = waste;\n"
         )
         with open(path, "w") as file:
@@ -206,8 +210,8 @@ class Partition(parallel_runs.Case):
         return folder
 
     def test_unlike(self):
-        """Two ranks, one on a device that takes several times as long, here by kernels with a delay: its share becomes the smaller one, whatever
-        rank it is, and the bits stay."""
+        """Two ranks, one on a device that takes several times as long, here by kernels with a
+        delay: its share becomes the smaller one, whatever rank it is, and the bits stay."""
         scene, slow = self.scene("column"), self.slow_kernels()
         alone = self.good_run(scene, 1).record()["digest"]
         for method, rank in (("geometric", 0), ("graph", 1)):
@@ -225,7 +229,8 @@ class Partition(parallel_runs.Case):
                 self.assertLess(ranks[rank]["work"], 0.8 * ranks[1 - rank]["work"])
 
     def test_implementations(self):
-        """One rank on pocl, one on Mesa's rusticl, which has no double precision: the bits of either alone, and the slower one gets less to do."""
+        """One rank on pocl, one on Mesa's rusticl, which has no double precision: the bits of
+        either alone, and the slower one gets less to do."""
         os.environ["RUSTICL_ENABLE"] = "llvmpipe"
         name = ["pthread", "llvmpipe"]
         listed = subprocess.run(

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""A run that goes on from a frame is the run that was never interrupted, to the bit: state, contacts, broken links, measures, energies; on any ranks.
-Own arguments: results_tool, the tests."""
+"""A run that goes on from a frame is the run that was never interrupted, to the bit: state,
+contacts, broken links, measures, energies; on any ranks. Own arguments: results_tool, the tests."""
 import os
 import re
 import subprocess
@@ -98,7 +98,7 @@ class Case(robust_jobs.Case):
         return expected
 
     def parts(self, scene, stops, end, ranks, *args):
-        """Up to the first stop, to each other, to the end; each part on the next number of ranks."""
+        """Up to the first stop, to each other, to the end; each part on the next ranks."""
         run = self.good_run(scene, ranks[0], *args, "--steps", str(stops[0]), name="parts")
         for begin, to, n in zip(stops, [*stops[1:], end], ranks[1:]):
             run = self.resume(run.dir, n, "--steps", str(to))
@@ -108,7 +108,7 @@ class Case(robust_jobs.Case):
 
 
 class Particles(Case):
-    """Stops somewhere; and right before a build of the lists, when ranks have begun to agree on it but do not know yet."""
+    """Stops somewhere; and right before a build of the lists, which ranks do not know yet."""
 
     def check(self, name, precision, stop, ranks, columns, boundary="both"):
         with self.subTest(scene=name, precision=precision):
@@ -213,7 +213,7 @@ class Lattice(Case):
 
 class Killed(Case):
     def test_killed(self):
-        """kill -9 in mid-run, frames and checkpoints in turn: the measures have lines beyond the last frame, or half of one."""
+        """kill -9 in mid-run: measures have lines beyond the last frame, or half of one."""
         content = robust_jobs.bed(frame_every=60)
         content["output"]["checkpoint_every"] = 40 * 2e-5
         content["measure"].append({"name": "often", "every": 3 * 2e-5, "momentum": "all"})
@@ -234,9 +234,8 @@ class Killed(Case):
             [frames.Frame(path).time for path in run.frames()],
             [frames.Frame(path).time for path in whole.frames()],
         )
-        self.assertEqual(
-            self.resume(job.dir, 1, "--steps", end).record()["digest"], whole.record()["digest"]
-        )  # with nothing left to do
+        done = self.resume(job.dir, 1, "--steps", end)  # with nothing left to do
+        self.assertEqual(done.record()["digest"], whole.record()["digest"])
 
 
 class Wrong(Case):
@@ -256,7 +255,7 @@ class Wrong(Case):
         self.assertEqual(sorted(os.listdir(self.whole_run.dir)), before)
 
     def test_damage(self):
-        """A damaged newest frame is named, with what is wrong, and the one before is used: the end is the same."""
+        """A damaged newest frame is named and the one before is used: the end is the same."""
         with open(self.whole_run.frames()[-1], "rb") as file:
             data = file.read()
         half = len(data) // 2
@@ -274,7 +273,8 @@ class Wrong(Case):
                 run = self.resume(self.whole_run.dir, ranks, "--steps", "50")
                 self.assertRegex(
                     run.err,
-                    r"\Ademocles: warning: '\S*frame_000003.hdf' cannot be used: .*; trying the frame before it\n",
+                    r"\Ademocles: warning: '\S*frame_000003.hdf' cannot be used: .*; trying the "
+                    r"frame before it\n",
                 )
                 self.assertEqual(run.err.count("cannot be used"), 1)
                 self.assertEqual(
@@ -288,7 +288,7 @@ class Wrong(Case):
         self.refused("no frame in '\\S+' can be used", ranks=(1, 3))
 
     def test_versions(self):
-        """Another version of the format, and a dataset less: no damage that a checksum could find."""
+        """Another version of the format, a dataset less: no damage that a checksum finds."""
 
         def less(state):
             del state["elements/torque"]
@@ -360,7 +360,8 @@ class Wrong(Case):
             "--set",
             "partition.every=7",
             "--set",
-            "measure=[{name: energy, every: 2e-3, energy: all}, {name: probe, every: 2e-4, probe: {element: 3}}]",
+            "measure=[{name: energy, every: 2e-3, energy: all}, {name: probe, every: 2e-4, probe: "
+            "{element: 3}}]",
         )
         self.assertIn("probe.csv' is empty", run.err)
         self.assertEqual(len(run.series()["probe.csv"].splitlines()), 3)
@@ -374,7 +375,7 @@ class Wrong(Case):
         )
 
     def test_another_run(self):
-        """Two runs never write into one folder; a run that was asked to stop by a file can go on."""
+        """Two runs never write into one folder; what a file asked to stop can go on."""
         scene = self.put(robust_jobs.bed(frame_every=20))
         job = self.job(scene, 1, name="busy")
         job.wait_frames(2)

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Runs that cannot be: each has one message, its exit code, leaves nothing half-done, and no rank waits for ever. Own argument: results_tool."""
+"""Runs that cannot be: each has one message, its exit code, leaves nothing half-done, and no rank
+waits for ever. Own argument: results_tool."""
 import os
 import resource
 import shutil
@@ -28,7 +29,8 @@ class Failures(robust_jobs.Case):
 
 class Numerics(Failures):
     def test_step_over_limit(self):
-        """Two spheres that touch may take 2/sqrt(2k/m) = 5.7e-4 s, a bed that has come to rest less: the first is refused at once, the other then."""
+        """Two spheres that touch may take 2/sqrt(2k/m) = 5.7e-4 s, a bed that has come to rest
+        less: the first is refused at once, the other then."""
         contact = {"normal": {**scene_parts.LINEAR, "damping_ratio": 0}}
         pair = scene_parts.scene(1000, 6e-4, contact, [{"name": "pair", "file": "pair.csv"}])
         with open(os.path.join(self.dir, "pair.csv"), "w") as file:
@@ -77,7 +79,8 @@ class Numerics(Failures):
         self.failed_record(run, 5)
 
     def test_blow_up(self):
-        """Some times the stable step: the run finds out by itself, and the frames until then stay."""
+        """Some times the stable step: the run finds out by itself,
+        and the frames until then stay."""
         contact = {"normal": {**scene_parts.LINEAR, "damping_ratio": 0}}
         room = [scene_parts.box("room", (0, 0, 0), (0.03, 0.03, 0.03))]
         packed = scene_parts.scene(
@@ -107,7 +110,8 @@ class Numerics(Failures):
                 self.assertGreater(self.whole(run.dir), 0)
 
     def test_nan_in_the_last_step(self):
-        """Too few steps for the flags of the drift to be read: 1e-41 kg are no mass in single precision."""
+        """Too few steps for the flags of the drift to be read:
+        1e-41 kg are no mass in single precision."""
         dust = scene_parts.scene(
             3,
             1e-5,
@@ -144,7 +148,8 @@ class Environment(Failures):
             self.fails(scene, ranks, 4, "no such thing", "--device", "no such thing")
 
     def test_kernel_that_does_not_build(self):
-        """Sources from a folder, one of them broken: options, log and place of the source are said."""
+        """Sources from a folder, one of them broken: options,
+        log and place of the source are said."""
         folder = os.path.join(self.dir, "kernels")
         shutil.copytree(os.path.join(os.path.dirname(parallel_runs.CASES), "kernels"), folder)
         with open(os.path.join(folder, "particle", "gather.cl"), "a") as file:

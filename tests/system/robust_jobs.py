@@ -1,4 +1,5 @@
-"""Runs that are interrupted, for the tests of robustness: started in the background, watched, signalled at one rank. Own argument: results_tool."""
+"""Runs that are interrupted, for the tests of robustness: started in the background, watched,
+signalled at one rank. Own argument: results_tool."""
 import glob
 import os
 import re
@@ -99,7 +100,8 @@ class Job:
             return "hangs"
 
     def owns(self, pid):
-        """Whether a process is of this job: in its session, or, since MPICH gives each rank one of its own, named by its folder."""
+        """Whether a process is of this job: in its session, or, since MPICH gives each rank one of
+        its own, named by its folder."""
         with open(f"/proc/{pid}/cmdline", "rb") as file:
             return os.getsid(pid) == self.process.pid or os.fsencode(self.dir) in file.read().split(
                 b"\0"

@@ -9,7 +9,8 @@ import robust_jobs
 
 
 class Asked(robust_jobs.Case):
-    """All ranks agree, write a frame together, exit 75; what they leave is a run of just as many steps."""
+    """All ranks agree, write a frame together, exit 75;
+    what they leave is a run of just as many steps."""
 
     def stopped(self, ranks, ask, *args):
         scene = self.put(robust_jobs.bed())

@@ -1,5 +1,5 @@
-"""Parts of scenes for the tests of runs: contacts, blocks of elements, walls, meshes, lists of
-elements."""
+"""Parts of scenes for the tests of runs: contacts, blocks of elements, walls, meshes,
+lists of elements."""
 import math
 import random
 
@@ -16,7 +16,8 @@ EVERYTHING = [
 
 
 def scene(steps, dt, contact, elements, walls=(), materials=None, measure=(), observe=5, **more):
-    """A scene of glass elements and steel walls with one contact law; frames at both ends, measures `observe` times."""
+    """A scene of glass elements and steel walls with one contact law; frames at both ends,
+    measures `observe` times."""
     end = steps * dt
     return {
         "title": "parallel test",
@@ -116,7 +117,8 @@ def sheet_stl(low, high, n, height):
 
 
 def gas_csv(n, size, radius, speed, seed=5):
-    """n spheres without overlap in a periodic cube (0..size each axis), some across its faces, random velocities and spins."""
+    """n spheres without overlap in a periodic cube (0..size each axis), some across its faces,
+    random velocities and spins."""
     rng, points = random.Random(seed), []
     while len(points) < n:
         p = [rng.uniform(0, s) for s in size]
@@ -139,8 +141,9 @@ def gas_csv(n, size, radius, speed, seed=5):
 
 
 def touching_csv(n, spacing, radii, origin, drift, seed=7):
-    """Spheres on a lattice n[0] x n[1] x n[2], radii in turn; with a spacing below the diameter they touch at the start. Drift, random velocities
-    and spins pull contacts apart and roll them."""
+    """Spheres on a lattice n[0] x n[1] x n[2], radii in turn; with a spacing below the diameter
+    they touch at the start. Drift, random velocities and spins pull contacts apart and roll
+    them."""
     rng, rows = random.Random(seed), "x,y,z,radius,vx,vy,vz,wx,wy,wz\n"
     for number, cell in enumerate(
         (i, j, k) for i in range(n[0]) for j in range(n[1]) for k in range(n[2])

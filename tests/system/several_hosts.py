@@ -1,9 +1,10 @@
 #!/usr/bin/python3
-"""Ranks on several hosts, which share nothing but the folder of results: each is a network namespace with an address, a name, a /tmp and a /dev/shm
-of its own, on a bridge; messages go over TCP. The bits are those of one rank.
+"""Ranks on several hosts, which share nothing but the folder of results: each is a network
+namespace with an address, a name, a /tmp and a /dev/shm of its own, on a bridge; messages go over
+TCP. The bits are those of one rank.
 
-All of it lives in a process namespace that ends with the test, so nothing can be left behind. Where namespaces are not permitted the test is
-skipped."""
+All of it lives in a process namespace that ends with the test, so nothing can be left behind. Where
+namespaces are not permitted the test is skipped."""
 import json
 import os
 import shutil
@@ -17,7 +18,8 @@ import parallel_scenes
 NET = "10.77.0"
 HANG = 240  # [s]
 TOOLS = ("ip", "unshare", "nsenter", "mount")
-# Inside /mnt, a file system that ends with the namespace: the program, what each host gets a copy of, and the results.
+# Inside /mnt, a file system that ends with the namespace: the program,
+# what each host gets a copy of, and the results.
 PROGRAM, STAGE, SHARED, AGENT, HOSTS = (
     "/mnt/democles",
     "/mnt/stage",
@@ -70,7 +72,10 @@ def why_not():
         return f"there is no {missing[0]}"
     if not parallel_runs.mpi.is_open_mpi():
         return "mpirun is not Open MPI's"
-    probe = "mount -t tmpfs none /mnt && ip link add probe type bridge && ip link add one type veth peer name two && hostname probe"
+    probe = (
+        "mount -t tmpfs none /mnt && ip link add probe type bridge && "
+        "ip link add one type veth peer name two && hostname probe"
+    )
     try:
         run = subprocess.run(
             [*unshare(), "sh", "-c", probe], capture_output=True, text=True, timeout=60
@@ -93,7 +98,8 @@ def write(path, text):
 def start_host(k):
     """A host that sleeps, with its own copy of the stage in its own /tmp."""
     script = (
-        f"mount -t tmpfs none /tmp && mount -t tmpfs none /dev/shm && cp -r {STAGE}/. /tmp && umount {STAGE} && hostname host{k} && "
+        f"mount -t tmpfs none /tmp && mount -t tmpfs none /dev/shm && cp -r {STAGE}/. /tmp && "
+        f"umount {STAGE} && hostname host{k} && "
         "echo ready && exec sleep 1000"
     )
     host = subprocess.Popen(
@@ -125,7 +131,8 @@ def start_host(k):
 
 
 def inside(program, stage, shared, slots, args):
-    """The head of the cluster, in its namespace: hosts 1, 2, ... with so many ranks each; mpirun as a batch system would call it. Its exit code."""
+    """The head of the cluster, in its namespace: hosts 1, 2, ... with so many ranks each; mpirun as
+    a batch system would call it. Its exit code."""
     call("hostname", "head")
     call("mount", "-t", "tmpfs", "none", "/mnt")
     for folder in (STAGE, SHARED, HOSTS):
@@ -140,7 +147,8 @@ def inside(program, stage, shared, slots, args):
     call("ip", "link", "set", "bridge", "up")
     write(
         AGENT,
-        f'#!/bin/sh\nhost=$1\nshift\nexec nsenter -t "$(cat {HOSTS}/"$host")" --net --mount --uts --wd=/ sh -c "$*"\n',
+        f'#!/bin/sh\nhost=$1\nshift\nexec nsenter -t "$(cat {HOSTS}/"$host")" --net --mount --uts '
+        '--wd=/ sh -c "$*"\n',
     )  # what ssh does
     for k in range(1, len(slots) + 1):
         start_host(k)

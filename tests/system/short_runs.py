@@ -1,6 +1,7 @@
 #!/usr/bin/python3
-"""Scenes with every feature, for a few steps on one rank and on three: the same bits, and not a word on stderr but warnings; nor after a request to
-stop. Short, so that sanitizers run them too. Own arguments: results_tool, the tests."""
+"""Scenes with every feature, for a few steps on one rank and on three: the same bits, and not a
+word on stderr but warnings; nor after a request to stop. Short, so that sanitizers run them too.
+Own arguments: results_tool, the tests."""
 import os
 import signal
 
@@ -8,8 +9,9 @@ import cli
 import parallel_runs
 import robust_jobs
 
-# Where nobody looks for leaks: while pocl compiles, for a sanitizer that notes who allocates takes a minute for each kernel; and on several ranks,
-# where LeakSanitizer now and then crashes because it stops threads, of MPI and pocl, that are ending.
+# Where nobody looks for leaks: while pocl compiles, for a sanitizer that notes who allocates takes
+# a minute for each kernel; and on several ranks, where LeakSanitizer now and then crashes because
+# it stops threads, of MPI and pocl, that are ending.
 NO_LEAKS = {"ASAN_OPTIONS": "detect_leaks=0"}
 
 

@@ -3,7 +3,8 @@ from scene_parts import FRICTION, HERTZ, LINEAR, box, scene, sheet_stl, shutters
 
 
 def few(cases):
-    """Few elements, steps, many rebuilds: equal sizes, friction, bonds on moving planes, triangles, a rod, periodic, no account of energy."""
+    """Few elements, steps, many rebuilds: equal sizes, friction, bonds on moving planes, triangles,
+    a rod, periodic, no account of energy."""
     dt, radius = 2e-5, 0.0025
     walls = [
         {
@@ -48,7 +49,8 @@ def few(cases):
 
 
 def mixed(cases):
-    """The same with Hertz, sizes and materials, rolling springs, bonds, a box and a tube, the account of energy; some leave the domain."""
+    """The same with Hertz, sizes and materials, rolling springs, bonds, a box and a tube, the
+    account of energy; some leave the domain."""
     dt = 1e-5
     contact = {
         "normal": HERTZ,
@@ -98,6 +100,7 @@ def mixed(cases):
         "mixed.csv": touching_csv(
             (5, 3, 1), 0.0049, [0.0025, 0.0026, 0.002], (0, 0, 0.0025), (55, 3, -4)
         ),
-        "fast.csv": "x,y,z,radius,vx,vy,vz\n0.006,0.004,0.0122,0.001,0,0,5\n0.0015,0.0045,0.0069,0.0015,0,0,-20\n",
+        "fast.csv": "x,y,z,radius,vx,vy,vz\n0.006,0.004,0.0122,0.001,0,0,5\n"
+        "0.0015,0.0045,0.0069,0.0015,0,0,-20\n",
         "sheet.stl": sheet_stl(-0.012, 0.03, 1, lambda x, y: 0.0048 + 0.1 * x),
     }

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Scenes that are wrong (exit code 3, every message once, on any number of ranks) and what `check` says of those that are right."""
+"""Scenes that are wrong (exit code 3, every message once, on any number of ranks) and what `check`
+says of those that are right."""
 import json
 import math
 import os
@@ -27,13 +28,15 @@ elements:
   - {name: listed, material: glass, file: listed.csv}
 walls:
   - {name: floor, material: steel, surface: {plane: {point: [0, 0, 0], normal: [0, 0, 1]}}}
-  - {name: mould, material: steel, surface: {stl: mould.stl, scale: 1 mm}, motion: {remove_at: 0.5 ms}}
+  - {name: mould, material: steel, surface: {stl: mould.stl, scale: 1 mm},
+      motion: {remove_at: 0.5 ms}}
 output: {every: 0.3 ms}
 measure:
   - {name: energy, every: 0.1 ms, energy: all}
 """
 LISTED = "x,y,z,radius\n0.1,0.1,0.1,0.002\n0.2,0.1,0.1,0.002\n"
-MOULD = "solid m\nfacet normal 0 0 1\nouter loop\nvertex 500 500 500\nvertex 510 500 500\nvertex 500 510 500\nendloop\nendfacet\nendsolid m\n"
+FACET = "vertex 500 500 500\nvertex 510 500 500\nvertex 500 510 500\n"
+MOULD = f"solid m\nfacet normal 0 0 1\nouter loop\n{FACET}endloop\nendfacet\nendsolid m\n"
 TEN = {
     "time.end",
     "gravity[2]",
@@ -124,6 +127,18 @@ class Wrong(Scenes):
         self.put("listed.csv", "x,y,z,radius\n0.1,0.1,0.1,0.002\n0.2,nan,0.1,0.002\n")
         self.refused([r"listed\.csv:3:5: .*nan.*"])
 
+    def test_nul_bytes(self):
+        """As after a power cut: in the scene, in --set, in a CSV."""
+        nul = "NUL byte: this is no text, or damaged"
+        self.put("listed.csv", LISTED + "\0\0\0\0\n0.3,0.1,0.1,0.002\n")
+        self.refused([r"listed\.csv:4:1: " + nul])
+        self.put("listed.csv", LISTED)
+        run = self.call("check", "scene.yaml", "--set", 'title="a\\0b"')
+        self.assertEqual((run.code, len(run.err)), (3, 1))
+        self.assertIn("text with a null character", run.err[0])
+        self.put("scene.yaml", SCENE + "\0\0\0")
+        self.refused([r"scene\.yaml:\d+:1: control character 0x00"])
+
     def test_unreadable_stl(self):
         self.put("mould.stl", "no surface at all")
         self.refused([r"scene\.yaml:20: wall 'mould': .*mould\.stl.*"])
@@ -141,7 +156,8 @@ class Wrong(Scenes):
         self.put("listed.csv", LISTED + "0.1,0.1,0.1,0.001\n")
         self.refused(
             [
-                r"scene\.yaml:17: element 30 of group 'listed' and element 32 of group 'listed' coincide at \(0\.1, 0\.1, 0\.1\)"
+                r"scene\.yaml:17: element 30 of group 'listed' and element 32 of group 'listed' "
+                r"coincide at \(0\.1, 0\.1, 0\.1\)"
             ]
         )
 
@@ -149,7 +165,8 @@ class Wrong(Scenes):
         self.put("listed.csv", LISTED + "0.3,0.1,-0.01,0.002\n")
         self.refused(
             [
-                r"scene\.yaml:19: element 32 of group 'listed' at \(0\.3, 0\.1, -0\.01\) is inside wall 'floor'"
+                r"scene\.yaml:19: element 32 of group 'listed' at \(0\.3, 0\.1, -0\.01\) is "
+                r"inside wall 'floor'"
             ]
         )
 
@@ -332,7 +349,7 @@ class Ran(Scenes):
         )
 
     def test_no_element_left(self):
-        """An empty state has a digest of zeros, which looks like a mistake unless the log says why."""
+        """An empty state has a digest of zeros; the log says why, lest it looks like a mistake."""
         change = (
             "walls=",
             "elements.small=",

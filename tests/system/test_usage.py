@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Commands that only print, and refusals of the command line: exit code and text, once on any number of ranks."""
+"""Commands that only print, and refusals of the command line: exit code and text,
+once on any number of ranks."""
 import os
 import pathlib
 import re

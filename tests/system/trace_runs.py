@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""A timeline of a run: whole, in order, of every rank, and with messages under way while the device works on the interior; the run's bits are those
-of the run without it."""
+"""A timeline of a run: whole, in order, of every rank, and with messages under way while the device
+works on the interior; the run's bits are those of the run without it."""
 import collections
 import json
 import os
@@ -124,9 +124,10 @@ class Trace(parallel_runs.Case):
         self.check_messages(timeline)
 
     def check_overlap(self, timeline, rank, kernel):
-        """Most of the interior is worked on after the own messages are sent and before the others' are all there. Not in each step: where a host has
-        to share its core it may be late: in one step of five, measured with two ranks and others on one core. An exchange that blocks never gets
-        there."""
+        """Most of the interior is worked on after the own messages are sent and before the others'
+        are all there. Not in each step: where a host has to share its core it may be late: in one
+        step of five, measured with two ranks and others on one core. An exchange that blocks never
+        gets there."""
         n_under = 0
         for step in range(FROM, FROM + STEPS):
             send, receive, interior = (

@@ -82,6 +82,10 @@ static void test_refused(void **unused)
         ":7: more than three corners in a triangle");
     refuse_text("solid s\nouter loop\nvertex 0 0 0\nendloop\nendsolid\n",
         ":4: a triangle has 1 of its 3 corners");
+    static const char damaged[] = "solid s\n" FACET("0 0 0", "1 0\0 0", "0 1 0") "endsolid\n",
+                      tail[] = "solid s\n" FACET("0 0 0", "1 0 0", "0 1 0") "\0\0\0\0\0";
+    refuse(damaged, sizeof damaged - 1, ":5:11: NUL byte: this text is damaged");
+    refuse(tail, sizeof tail - 1, ":8: the file is cut off: no 'endsolid'");
     refuse_text("solid s\nfacte normal\nendsolid\n", ":2: 'facte' is not a keyword of STL");
     refuse_text("solid s\n" FACET("0 0 0", "1 0 0", "2 0 0") "endsolid\n",
         ": all triangles have zero area (1)");
@@ -145,7 +149,7 @@ static void test_dialects(void **unused)
     memcpy(payload + 84 + 50 + 4, data + 84 + 50, 50);
     accept(payload, size + 4);
     refuse("\xff\xfes\0", 4, ": UTF-16 text; save it as ASCII or UTF-8");
-    refuse("solid a\nfacet\0 normal\nendsolid", 31, ": a NUL byte in the text, after 13 bytes");
+    refuse("solid a\rfacet\0 normal\rendsolid", 31, ":2:6: NUL byte: this text is damaged");
     refuse_text(
         "solid s\r" FACET("0 0 0", "1 0 0", "0 x 0") "endsolid", ":6: 'x' is not a finite number");
 }

@@ -7,7 +7,8 @@ from spack.package import *
 
 
 class Democles(MesonPackage):
-    """Discrete elements on clusters, by MPI and OpenCL: particles, and solids as lattices that may break."""
+    """Discrete elements on clusters, by MPI and OpenCL: particles,
+    and solids as lattices that may break."""
 
     version("develop")
 
@@ -25,7 +26,8 @@ class Democles(MesonPackage):
     depends_on("pkgconfig", type="build")
     depends_on("python@3.9:", type="build")
     depends_on("mpi")
-    # OMPIO of these corrupts parallel HDF5 files; the program takes ROMIO instead, which has to be there.
+    # OMPIO of these corrupts parallel HDF5 files; the program takes ROMIO instead,
+    # which has to be there.
     depends_on("openmpi+romio", when="^[virtuals=mpi] openmpi@:4.1.6")
     depends_on("hdf5@1.10:+mpi")
     depends_on("libyaml")
