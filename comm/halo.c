@@ -61,7 +61,24 @@ struct halo *halo_create(const struct comm *comm, const int64_t *count_to)
     for (int k = 0; k < halo->n_recv + halo->n_send; k++) halo->request[k] = MPI_REQUEST_NULL;
     in->index = fail_alloc((size_t)halo->n_recv * sizeof *in->index);
     free(count_from);
+    assert(halo_is_valid(halo));
     return halo;
+}
+
+static bool is_table(const int *rank, const int64_t *begin, int n, int n_rank)
+{
+    bool is = begin[0] == 0;
+    for (int k = 0; k < n; k++)
+        is &= rank[k] >= 0 && rank[k] < n_rank && (k == 0 || rank[k - 1] < rank[k]) &&
+              begin[k] < begin[k + 1];
+    return is;
+}
+
+bool halo_is_valid(const struct halo *h)
+{
+    return is_table(h->send_rank, h->send_begin, h->n_send, h->comm->n_rank) &&
+           is_table(h->recv_rank, h->recv_begin, h->n_recv, h->comm->n_rank) && h->n_open >= 0 &&
+           h->n_open <= h->n_recv;
 }
 
 /* Completes and frees the persistent requests. An inactive request counts as complete. */

@@ -32,6 +32,8 @@ struct halo {
 /* Collective. `count_to` [n_rank]: records that I send to each rank (0: none). Finds out who sends
  * to me. */
 struct halo *halo_create(const struct comm *comm, const int64_t *count_to);
+/* Whether both tables are what halo_create makes them: ranks ascending, no segment empty. */
+bool halo_is_valid(const struct halo *halo);
 void halo_free(struct halo *halo); /* NULL is fine. Collective: completes what is under way. */
 
 /* One exchange of records of any size outside the step (static data of new ghosts): blocking,

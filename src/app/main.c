@@ -17,6 +17,7 @@
 /* `democles run` and `democles resume`: collective. */
 static int run(struct comm *comm, struct options *options)
 {
+    signals_install(); /* after MPI_Init, which has handlers of its own */
     struct log *log = log_create(comm, options->run.quiet);
     bool goes_on = options->command == OPTIONS_RESUME;
     struct resume *from = goes_on ? resume_open(comm, log, options->operand) : NULL;
@@ -26,7 +27,6 @@ static int run(struct comm *comm, struct options *options)
     const char *given = goes_on ? options->operand : options->run.dir;
     char *dir = given ? fail_strdup(given) : fail_format("out/%s", scene->name);
     options->run.dir = dir;
-    signals_install();
     const struct step_ops *ops = scene->method == METHOD_LATTICE ? &lattice_ops : &particle_ops;
     struct sim *sim = sim_create(scene, comm, log, ops, from, &options->run);
     int code = sim_run(sim);

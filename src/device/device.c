@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "cache_folder.h"
 #include "device_find.h"
 #include "comm/fail.h"
 
@@ -58,6 +59,9 @@ static char *no_device(
             "Install the driver of your GPU, or for the CPU: apt-get install pocl-opencl-icd%s",
             vendors ? "; or unset OCL_ICD_VENDORS" : "");
     }
+    char *trouble = cache_folder_trouble();
+    if (trouble) fprintf(file, ". If pocl is installed: %s", trouble);
+    free(trouble);
     fclose(file);
     return text;
 }
@@ -146,6 +150,10 @@ struct device *device_open(
         comm_or_i32(comm, &lacks, 1);
         dev->fp64 = !lacks;
     }
+    if (dev->is_pocl && cache_folder_instead_of() && comm)
+        fail_warn("pocl keeps its kernels in '%s', since '%s' cannot be written; POCL_CACHE_DIR "
+                  "names another folder",
+            cache_folder_path(), cache_folder_instead_of());
     dev->profile = profile;
     dev->n_share = dev->type & CL_DEVICE_TYPE_CPU ? n_node_rank : (n_node_rank + n - 1) / n;
     open_queues(dev);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cache_folder.h"
 #include "comm/fail.h"
 
 /* Device and platform text, without the blanks that some drivers put around it. */
@@ -107,10 +108,11 @@ static void query(cl_platform_id platform, cl_device_id id, struct device_entry 
     /* others vectorise over the work-items of a group */
     d->one_lane = d->is_pocl && (d->type & CL_DEVICE_TYPE_CPU);
     bus_address(id, entry->bus, sizeof entry->bus);
-    entry->unusable = d->type & CL_DEVICE_TYPE_CUSTOM ? "not programmable"
-                      : !available                    ? "not available"
-                      : !compiler                     ? "no compiler"
-                                                      : NULL;
+    entry->unusable = d->type & CL_DEVICE_TYPE_CUSTOM       ? "not programmable"
+                      : !available                          ? "not available"
+                      : !compiler                           ? "no compiler"
+                      : d->is_pocl && !cache_folder_works() ? "no folder for its kernels"
+                                                            : NULL;
 }
 
 int device_find(struct device_entry **entry, cl_int *code)
@@ -118,6 +120,7 @@ int device_find(struct device_entry **entry, cl_int *code)
     cl_uint n_platform = 0;
     int n = 0;
     *entry = NULL;
+    cache_folder_prepare();
     *code = clGetPlatformIDs(0, NULL, &n_platform);
     if (*code != CL_SUCCESS || n_platform == 0) return 0;
     cl_platform_id *platform = fail_alloc(n_platform * sizeof *platform);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/signals.h"
 #include "comm/fail.h"
 #include "kernel_cache.h"
 #include "trace.h"
@@ -324,12 +325,22 @@ double launch_seconds(struct launch *launch)
     return launch->seconds;
 }
 
+static void enqueue(const struct launch *launch, cl_command_queue queue, size_t global,
+    const cl_event *after, cl_event *event)
+{
+    cl_int code = clEnqueueNDRangeKernel(
+        queue, launch->kernel, 1, NULL, &global, &launch->local, after ? 1 : 0, after, event);
+    if (code != CL_SUCCESS)
+        fail_stop(EXIT_DEVICE, "kernel %s: clEnqueueNDRangeKernel: %s (%d)", launch->name,
+            device_error_name(code), (int)code);
+}
+
 void launch_run_on(struct launch *launch, cl_command_queue queue, int64_t n_item,
     const cl_event *after, cl_event *event)
 {
-    cl_uint n_after = after ? 1 : 0;
     if (n_item <= 0) {
-        if (after || event) check_cl(clEnqueueMarkerWithWaitList(queue, n_after, after, event));
+        if (after || event)
+            check_cl(clEnqueueMarkerWithWaitList(queue, after ? 1 : 0, after, event));
         return;
     }
     struct device *dev = launch->program->dev;
@@ -339,16 +350,17 @@ void launch_run_on(struct launch *launch, cl_command_queue queue, int64_t n_item
     cl_event own, *done = trace_event(dev->trace, event ? event : p ? &own : NULL);
 
     refresh(launch);
-    bool compiles = dev->is_pocl && global > launch->largest;
-    int lock = compiles ? kernel_cache_lock(dev, launch->program->cache_key) : -1;
-    cl_int code = clEnqueueNDRangeKernel(
-        queue, launch->kernel, 1, NULL, &global, &launch->local, n_after, after, done);
-    if (code != CL_SUCCESS)
-        fail_stop(EXIT_DEVICE, "kernel %s: clEnqueueNDRangeKernel: %s (%d)", launch->name,
-            device_error_name(code), (int)code);
-    if (compiles) {
+    if (dev->is_pocl && global > launch->largest) {
+        uint64_t key = kernel_cache_launch_key(
+            launch->program->cache_key, launch->name, launch->local, global);
+        signals_hold();
+        int lock = kernel_cache_lock(dev, key);
+        enqueue(launch, queue, global, after, done);
         check_cl(clFinish(queue));
         kernel_cache_unlock(lock);
+        signals_pass();
+    } else {
+        enqueue(launch, queue, global, after, done);
     }
     if (global > launch->largest) launch->largest = global;
     launch->n_run++;

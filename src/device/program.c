@@ -5,16 +5,17 @@
 #include <unistd.h>
 
 #include "base/files.h"
+#include "base/signals.h"
 #include "comm/fail.h"
 #include "kernel_cache.h"
 
 /* Writes what the compiler saw beside the results, or into the temporary folder; returns the path,
- * or why there is none. */
+ * or why there is none. Beside the results under a name that `run --force` knows. */
 static char *dump(const struct program *program, const char *source)
 {
     const char *folder = program->dev->dump_dir ? program->dev->dump_dir : getenv("TMPDIR");
-    char *path = fail_format(
-        "%s/%s_%d.cl", folder && folder[0] ? folder : "/tmp", program->name, (int)getpid());
+    char *path =
+        fail_format("%s/failed_build_%d.cl", folder && folder[0] ? folder : "/tmp", (int)getpid());
     char error[FILES_ERROR_SIZE];
     int fd = files_create(path, error);
     FILE *file = fd >= 0 ? fdopen(fd, "w") : NULL;
@@ -46,10 +47,12 @@ static void build(struct program *program, const char *source)
     program->id = clCreateProgramWithSource(program->dev->context, 1, &source, NULL, &code);
     check_cl_as(code, "clCreateProgramWithSource");
     program->cache_key = kernel_cache_key(program->options, source);
+    signals_hold();
     int lock = kernel_cache_lock(program->dev, program->cache_key);
     code = clBuildProgram(program->id, 1, &program->dev->id, program->options, NULL, NULL);
-    kernel_cache_unlock(lock);
     if (code != CL_SUCCESS) build_failed(program, source, code);
+    kernel_cache_unlock(lock);
+    signals_pass();
 }
 
 struct program *program_build(struct device *dev, const struct comm *comm, const char *name,

@@ -1,7 +1,6 @@
 #include "lattice_layout.h"
 
 #include <assert.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -291,7 +290,37 @@ struct lattice_layout *lattice_layout_create(const struct lattice_cells *cells, 
     lattice_places_free(b.places);
     free(b.mark);
     free(b.local);
+    assert(lattice_layout_is_valid(l, n_rank));
     return l;
+}
+
+static bool all_within(const int *list, int64_t n, int64_t low, int64_t high)
+{
+    bool is = true;
+    for (int64_t k = 0; k < n; k++) is &= list[k] >= low && list[k] < high;
+    return is;
+}
+
+bool lattice_layout_is_valid(const struct lattice_layout *l, int n_rank)
+{
+    int64_t n_place = (int64_t)l->n_run * l->run, n_send = 0, n_recv = 0;
+    /* runs between the empty ones */
+    bool is = n_place <= l->plane && all_within(l->force, l->n_force, 1, l->n_run - 1) &&
+              all_within(l->volume, l->n_volume, 1, l->n_run - 1) &&
+              all_within(l->index, l->n_owned, l->run, n_place - l->run) &&
+              all_within(l->send, l->n_send, l->run, n_place - l->run) &&
+              all_within(l->recv, l->n_recv, l->run, n_place - l->run) &&
+              l->n_force_interior <= l->n_force && l->n_volume_interior <= l->n_volume;
+    for (int r = 0; r < n_rank; r++) {
+        n_send += l->count_to[r];
+        n_recv += l->count_from[r];
+    }
+    is &= n_send == l->n_send && n_recv == l->n_recv;
+    unsigned char *taken = fail_alloc((size_t)n_place);
+    for (int64_t k = 0; k < l->n_owned && is; k++)
+        is &= (k == 0 || l->gid[k - 1] < l->gid[k]) && !taken[l->index[k]]++;
+    free(taken);
+    return is;
 }
 
 void lattice_layout_free(struct lattice_layout *l)

@@ -11,6 +11,8 @@
 
 #include "lattice_places.h"
 
+#include <stdbool.h>
+
 struct lattice_layout {
     int axis, run; /* of runs: axis, and length, a multiple of 8 */
     int n_run;     /* with the empty ones */
@@ -39,6 +41,8 @@ struct lattice_lay lattice_layout_run(const struct lattice_cells *cells);
 /* owner [n]: rank of each cell. depth: layers of ghosts, 1, or 2 with the volumetric pass. */
 struct lattice_layout *lattice_layout_create(const struct lattice_cells *cells, const int *owner,
     int rank, int n_rank, struct lattice_lay run, int depth);
+/* Whether ids ascend, each owned cell has a place of its own, and lists stay within the runs. */
+bool lattice_layout_is_valid(const struct lattice_layout *layout, int n_rank);
 void lattice_layout_free(struct lattice_layout *layout);
 
 #endif

@@ -280,6 +280,7 @@ void assigned_build(struct assigned *a, struct scan *scan, const struct particle
     struct pair_list *l = &pairs->now;
     const struct field *state = &p->field[FIELD_STATE];
     order(a, scan, l, ghosts->exchange.halo);
+    assert(pairs_is_valid(l));
     list_here(a, scan, p, l, ghosts->exchange.halo);
     list_there(a, scan, p, l, ghosts);
     plan(a, ASSIGNED_STATES, a->there.n_element, a->here.n_element, &state->now, state->bytes);

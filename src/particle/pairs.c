@@ -1,5 +1,6 @@
 #include "pairs.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -177,6 +178,21 @@ void pairs_build(
             &pairs->ledger, (size_t)pairs->now.capacity * CONTACT_LEDGER_WIDTH * sizeof(cl_double));
         buffer_zero(&pairs->ledger);
     }
+    assert(pairs_is_valid(&pairs->now));
+}
+
+bool pairs_is_valid(const struct pair_list *l)
+{
+    bool elements = l->n_owned >= 0 && l->n_owned <= l->n_all,
+         interior = l->n_interior >= 0 && l->first_boundary % PAIR_ALIGN == 0 &&
+                    l->n_interior <= l->first_boundary &&
+                    l->first_boundary < l->n_interior + PAIR_ALIGN,
+         boundary = l->n_mine >= 0 && l->n_mine <= l->n_boundary,
+         /* the last place is the blank pair's */
+        room = l->first_boundary + l->n_boundary < l->capacity,
+         counted = l->n_own >= 0 && l->n_own <= l->n_interior + l->n_boundary &&
+                   (l->n_lower == l->n_all || l->n_mine == l->n_boundary);
+    return elements && interior && boundary && room && counted;
 }
 
 void pairs_carry(struct pairs *pairs, const struct particles *p, const struct buffer *old_index)

@@ -57,6 +57,9 @@ void pairs_free(struct pairs *pairs);
 void pairs_build(
     struct pairs *pairs, struct cells *cells, struct scan *scan, const struct particles *p);
 
+/* Whether the counts of a list fit each other as above; asserted where lists are built. */
+bool pairs_is_valid(const struct pair_list *list);
+
 /* old_index [n_owned + n_ghost]: old number of an owned element, or old n_owned + its place among
  * the arrivals. */
 void pairs_carry(struct pairs *pairs, const struct particles *p, const struct buffer *old_index);

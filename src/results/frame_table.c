@@ -33,7 +33,7 @@ void *frame_table_add(struct frame_table *table, const struct h5_reader *reader,
 {
     int64_t n = h5_read_size(reader, table->name, column);
     if (n != table->n_total)
-        fail_stop(EXIT_IO, "'%s' cannot be used: %s/%s has %lld rows, other columns %lld",
+        fail_stop_together(EXIT_IO, "'%s' cannot be used: %s/%s has %lld rows, other columns %lld",
             table->path, table->name, column, (long long)n, (long long)table->n_total);
     struct frame_column *c = &table->column[table->n_column++];
     *c = (struct frame_column){column, type, width, NULL};

@@ -2,7 +2,8 @@
  * its tables.
  *
  * Every rank opens the file by itself and reads what it asks for; nothing here is collective. What
- * is not there, or cannot be read, ends the run with EXIT_IO. Knows nothing of what the numbers
+ * is not there, or cannot be read, ends the run with EXIT_IO; what is another shape or type than it
+ * has to be is so on every rank, which all have to ask then. Knows nothing of what the numbers
  * mean. */
 #ifndef DEMOCLES_H5_READ_H
 #define DEMOCLES_H5_READ_H

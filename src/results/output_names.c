@@ -23,6 +23,16 @@ static bool is_unfinished(const char *name)
     return ours;
 }
 
+/* What a compiler that failed has seen, with the number of the process (device/program.c). */
+static bool is_failed_build(const char *name)
+{
+    static const char before[] = "failed_build_";
+    size_t n = sizeof before - 1;
+    if (strncmp(name, before, n) != 0) return false;
+    size_t digits = strspn(name + n, "0123456789");
+    return digits > 0 && !strcmp(name + n + digits, ".cl");
+}
+
 bool output_names_are_results(const char *name)
 {
     return snapshot_index(name) >= 0 || !strcmp(name, "run.json");
@@ -31,7 +41,8 @@ bool output_names_are_results(const char *name)
 bool output_names_are_ours(const char *name)
 {
     static const char *const single[] = {"log.txt", "run.balance.csv", "trace.json", "stop", NULL};
-    return output_names_are_results(name) || is_unfinished(name) || is_one_of(name, single);
+    return output_names_are_results(name) || is_unfinished(name) || is_failed_build(name) ||
+           is_one_of(name, single);
 }
 
 bool output_names_are_over(const char *name, int64_t index)

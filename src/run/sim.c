@@ -183,8 +183,7 @@ static void begin_loop(struct sim *s)
 {
     double *total = s->timers.total;
     struct step_counts counts;
-    signals_keep();
-    signals_pass();
+    signals_pass(); /* held since the program began */
     total[TIMER_EXCHANGE] = total[TIMER_WAIT] = total[TIMER_REGROUP] = 0; /* those of the set-up */
     s->ops->count(s, &counts);
     s->sent_before = counts.sent;

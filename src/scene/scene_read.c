@@ -72,6 +72,20 @@ static unsigned long hash_of(const char *text)
     return (unsigned long)hash;
 }
 
+/* Whether the scene with all defaults, which frames hold, reads back to the same scene: what a run
+ * begins with, `resume` can read. */
+static void check_read_back(const struct scene *scene, struct scene_errors *errors)
+{
+    struct scene_errors again = {0};
+    const char *text = scene->resolved;
+    struct scene *copy = scene_read_text(scene->path, text, strlen(text), NULL, 0, &again);
+    if (!copy || copy->hash != scene->hash)
+        scene_errors_add(errors, "%s: no run of this scene could be resumed: %s", scene->path,
+            again.n > 0 ? again.text[0] : "with all defaults it is another scene");
+    scene_free(copy);
+    scene_errors_free(&again);
+}
+
 struct scene *scene_read(
     const char *path, const char *const *set, int n_set, struct scene_errors *errors)
 {
@@ -79,7 +93,12 @@ struct scene *scene_read(
     char *text = read_file(path, &n, errors);
     struct scene *scene = text ? scene_read_text(path, text, n, set, n_set, errors) : NULL;
     free(text);
-    return scene;
+    if (!scene) return NULL;
+    int before = errors->n;
+    check_read_back(scene, errors);
+    if (errors->n == before) return scene;
+    scene_free(scene);
+    return NULL;
 }
 
 struct scene *scene_read_text(const char *path, const char *text, size_t n, const char *const *set,

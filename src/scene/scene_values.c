@@ -13,7 +13,8 @@
 #include "scene_values.h"
 #include "units.h"
 
-enum { MAX_WORDS = 32 };
+/* Bytes of a name, and of one that names NAME.csv. */
+enum { MAX_WORDS = 32, LONGEST = 1000, LONGEST_FILE = 250 };
 
 /* Splits "a|b|c" into `buffer`; returns the number of words. An empty word counts. */
 static int split_words(const char *words, char *buffer, size_t size, const char **word)
@@ -164,6 +165,9 @@ static void read_text(const struct scene_place *p, const struct scene_node *node
     if (node->kind != NODE_SCALAR && !scene_is_kind(p, node, NODE_SCALAR, "text")) return;
     if (p->key->type == KEY_NAME) {
         const char *problem = scene_values_name_problem(node);
+        bool names_file = !strcmp(p->key->path, "measure[].name");
+        if (!problem && names_file && strlen(node->text) > LONGEST_FILE)
+            problem = "the name of a measure, and of its file, is at most 250 bytes long";
         if (problem) {
             scene_issue_at(p->reader, node, p->path, "%s", problem);
             return;
@@ -183,6 +187,10 @@ const char *scene_values_name_problem(const struct scene_node *node)
     for (const char *c = node->text; *c; c++)
         if (!isalnum((unsigned char)*c) && *c != '_' && *c != '-' && (unsigned char)*c < 0x80)
             return "a name may hold letters, digits, '_' and '-' only";
+    if (scene_write_has_unsafe(node->text))
+        return "a name may hold letters, digits, '_' and '-' only";
+    /* YAML looks no further for the colon after a key than 1024 characters. */
+    if (strlen(node->text) > LONGEST) return "a name is at most 1000 bytes long";
     return NULL;
 }
 

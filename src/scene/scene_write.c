@@ -36,15 +36,42 @@ static bool is_plain(const char *value)
     return true;
 }
 
+/* The code point of the UTF-8 character at *at, which moves behind it. */
+static unsigned long next_character(const char **at)
+{
+    const unsigned char *p = (const unsigned char *)*at;
+    int more = p[0] < 0x80 ? 0 : p[0] < 0xe0 ? 1 : p[0] < 0xf0 ? 2 : 3;
+    unsigned long c = more == 0 ? p[0] : p[0] & (0x3fu >> more);
+    for (int k = 1; k <= more && p[k]; k++) c = c << 6 | (p[k] & 0x3f);
+    *at += more + 1;
+    return c;
+}
+
+/* What YAML takes for a line break, or allows only as an escape: controls, NEL, the separators, the
+ * byte order mark, what is no character. */
+static bool is_unsafe(unsigned long c)
+{
+    return c < 0x20 || (c >= 0x7f && c <= 0x9f) || c == 0x2028 || c == 0x2029 || c == 0xfeff ||
+           c == 0xfffe || c == 0xffff;
+}
+
 static void write_quoted(struct scene_text *text, const char *value)
 {
     scene_write(text, "\"");
-    for (const char *p = value; *p; p++) {
-        if (*p == '"' || *p == '\\') scene_write(text, "\\%c", *p);
-        else if ((unsigned char)*p < 0x20 || *p == 0x7f) scene_write(text, "\\x%02x", *p);
-        else scene_write(text, "%c", *p);
+    for (const char *p = value, *from = p; *p; from = p) {
+        unsigned long c = next_character(&p);
+        if (c == '"' || c == '\\') scene_write(text, "\\%c", (char)c);
+        else if (is_unsafe(c)) scene_write(text, c < 0x100 ? "\\x%02lx" : "\\u%04lx", c);
+        else scene_write(text, "%.*s", (int)(p - from), from);
     }
     scene_write(text, "\"");
+}
+
+bool scene_write_has_unsafe(const char *value)
+{
+    while (*value)
+        if (is_unsafe(next_character(&value))) return true;
+    return false;
 }
 
 void scene_write_string(struct scene_text *text, const char *value)

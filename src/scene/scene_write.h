@@ -20,6 +20,8 @@ void scene_write_key(struct scene_text *text, int depth, const char *name);
 void scene_write_value(struct scene_text *text, const char *value);
 /* Text as a YAML scalar, quoted where it must be. */
 void scene_write_string(struct scene_text *text, const char *value);
+/* Whether a text (UTF-8) has characters that stand as escapes in YAML: controls, line breaks. */
+bool scene_write_has_unsafe(const char *value);
 void scene_write_number(struct scene_text *text, double value);
 void scene_write_end(struct scene_text *text);
 /* Ends the line of a key whose entries follow; scene_write_close gives what scene_write_open

@@ -100,6 +100,13 @@ static void one_kind(const struct comm *comm, int kind, int n_round)
     struct record *once = calloc((size_t)n_recv + 1, sizeof *once),
                   *aside = calloc((size_t)n_send + 1, sizeof *aside);
 
+    CHECK(halo_is_valid(halo));
+    if (halo->n_recv > 0) {
+        int *last = &halo->recv_rank[halo->n_recv - 1], rank = *last;
+        *last = comm->n_rank; /* a rank that is not there */
+        CHECK(!halo_is_valid(halo));
+        *last = rank;
+    }
     fill(halo, send, -1);
     halo_exchange(halo, send, recv, sizeof *send);
     check(halo, recv, -1);

@@ -1,10 +1,12 @@
-/* Who compiles waits for the same program in another process, and for no other program. */
+/* Who compiles waits for the same program in another process, and for no other program, and no
+ * longer for what has been compiled. */
 #include "../walls/scratch.h"
 
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
+#include "comm/fail.h"
 #include "device/kernel_cache.h"
 
 enum { HELD_MS = 300 };
@@ -18,16 +20,16 @@ static double seconds(void)
 }
 
 /* Another process, which says that it begins and then how long it has waited for the lock [ms];
- * exit code 0 if it has got it. */
-static _Noreturn void wait_in_child(int out, int inherited, uint64_t key)
+ * exit code 0 if it has been right to lock. */
+static _Noreturn void wait_in_child(int out, int inherited, uint64_t key, bool compiled)
 {
-    kernel_cache_unlock(inherited); /* the parent has it still */
+    close(inherited); /* the parent has it still */
     double begin = seconds();
     bool told = write(out, "", 1) == 1;
     int lock = kernel_cache_lock(&pocl, key), ms = (int)(1000 * (seconds() - begin));
     told &= write(out, &ms, sizeof ms) == sizeof ms;
     kernel_cache_unlock(lock);
-    _exit(lock < 0 || !told);
+    _exit((lock < 0) != compiled || !told);
 }
 
 /* How long another process waits for the lock of `wanted` while this one holds that of `held`, for
@@ -40,7 +42,7 @@ static int waited_ms(uint64_t held, uint64_t wanted, bool until_end)
     assert_true(lock >= 0);
     assert_int_equal(pipe(ends), 0);
     pid_t child = fork();
-    if (child == 0) wait_in_child(ends[1], lock, wanted);
+    if (child == 0) wait_in_child(ends[1], lock, wanted, held == wanted);
     assert_int_equal(read(ends[0], &begun, 1), 1);
     if (!until_end) {
         nanosleep(&while_held, NULL);
@@ -69,14 +71,31 @@ static void same_program(void **unused)
     (void)unused;
     uint64_t key = kernel_cache_key("", "a");
     assert_true(waited_ms(key, key, false) >= HELD_MS);
-    assert_true(
-        waited_ms(UINT64_MAX, UINT64_MAX, false) >= HELD_MS); /* the last byte that there is */
+    assert_int_equal(kernel_cache_lock(&pocl, key), -1); /* for ever */
+    struct device newer = {.is_pocl = true, .driver = "newer"};
+    int lock = kernel_cache_lock(&newer, key);
+    assert_true(lock >= 0);
+    close(lock); /* no success: the next one builds */
+    lock = kernel_cache_lock(&newer, key);
+    assert_true(lock >= 0);
+    kernel_cache_unlock(lock);
+}
+
+static void same_launch(void **unused)
+{
+    (void)unused;
+    uint64_t key = kernel_cache_launch_key(1, "gather", 64, 1000);
+    assert_true(key == kernel_cache_launch_key(1, "gather", 64, 1001));
+    assert_true(key != kernel_cache_launch_key(1, "gather", 64, 100000));
+    assert_true(key != kernel_cache_launch_key(1, "gather", 128, 1000));
+    assert_true(key != kernel_cache_launch_key(1, "gathe", 64, 1000));
+    assert_true(key != kernel_cache_launch_key(2, "gather", 64, 1000));
 }
 
 static void other_program(void **unused)
 {
     (void)unused;
-    assert_true(waited_ms(kernel_cache_key("", "a"), kernel_cache_key("", "b"), true) >= 0);
+    assert_true(waited_ms(kernel_cache_key("", "c"), kernel_cache_key("", "b"), true) >= 0);
 }
 
 static void other_driver(void **unused)
@@ -88,7 +107,14 @@ static void other_driver(void **unused)
 
 int main(void)
 {
+    char folder[] = "/tmp/democles_cache_XXXXXX";
+    if (!mkdtemp(folder) || setenv("POCL_CACHE_DIR", folder, 1)) return 1;
     const struct CMUnitTest tests[] = {cmocka_unit_test(keys), cmocka_unit_test(same_program),
-        cmocka_unit_test(other_program), cmocka_unit_test(other_driver)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
+        cmocka_unit_test(same_launch), cmocka_unit_test(other_program),
+        cmocka_unit_test(other_driver)};
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    char *command = fail_format("rm -r %s", folder);
+    failed += system(command) != 0;
+    free(command);
+    return failed;
 }

@@ -24,6 +24,28 @@ static void marks(void **state)
     }
 }
 
+/* Held as often as passed; the handlers are ours again afterwards, whoever has had them. */
+static void held(void **state)
+{
+    static const int number[] = {SIGTERM, SIGINT, SIGUSR1};
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        signals_install();
+        signals_hold();
+        signals_hold();
+        assert_false(signals_wait());
+        signal(number[k], SIG_IGN);
+        signal(number[k], SIG_DFL);
+        raise(number[k]);
+        assert_true(signals_wait());
+        signals_pass();
+        assert_int_equal(signals_seen(), 0);
+        signals_pass();
+        assert_int_equal(signals_seen(), number[k]);
+        assert_false(signals_wait());
+    }
+}
+
 /* The signal comes while read() waits; the byte comes later. */
 static void read_goes_on(void **state)
 {
@@ -49,6 +71,7 @@ static void read_goes_on(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(marks), cmocka_unit_test(read_goes_on)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(marks), cmocka_unit_test(held), cmocka_unit_test(read_goes_on)};
     return cmocka_run_group_tests_name("signals", tests, NULL, NULL);
 }

@@ -175,6 +175,10 @@ static void check(struct crowd c, int64_t least)
     check_cells(&c);
     int64_t n_row = check_rows(&c);
     assert_true(n_row >= least);
+    struct pair_list wrong = lists.pairs->now;
+    assert_true(pairs_is_valid(&wrong));
+    wrong.capacity = wrong.first_boundary + wrong.n_boundary; /* no room for the blank pair */
+    assert_false(pairs_is_valid(&wrong));
     check_pairs(&c, n_row);
     check_links(&c);
     crowd_free(&c);

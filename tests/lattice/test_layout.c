@@ -132,6 +132,13 @@ static void check(
         w.l[r] = lattice_layout_create(
             cells, w.owner, r, n_rank, (struct lattice_lay){axis, run}, depth);
         n_owned += w.l[r]->n_owned;
+        if (w.l[r]->n_owned > 1) {
+            int *index = w.l[r]->index, first = index[0];
+            assert_true(lattice_layout_is_valid(w.l[r], n_rank));
+            index[0] = index[1]; /* two cells in one place */
+            assert_false(lattice_layout_is_valid(w.l[r], n_rank));
+            index[0] = first;
+        }
         assert_true(w.l[r]->plane >= (int64_t)w.l[r]->n_run * run && w.l[r]->plane % 1024 == 80);
         for (int k = 0; k < run; k++)
             assert_true(w.l[r]->word[k] == 0 && w.l[r]->word[(w.l[r]->n_run - 1) * run + k] == 0);

@@ -248,6 +248,8 @@ static void names_and_domain(void **state)
         "scene.yaml:5:43: measure[0].wall_force: unknown wall 'gate'");
     fixture_expect_one(f, SCENE(ONE "measure: [{name: a/b, every: 1, energy: all}]\n"),
         "scene.yaml:5:18: measure[0].name: a name may hold letters, digits, '_' and '-' only");
+    fixture_expect_one(f, SCENE(ONE "measure: [{name: \"a\\x85\", every: 1, energy: all}]\n"),
+        "scene.yaml:5:18: measure[0].name: a name may hold letters, digits, '_' and '-' only");
     fixture_expect_one(f,
         SCENE(
             ONE "measure: [{name: a, every: 1, energy: all}, {name: a, every: 1, energy: all}]\n"),

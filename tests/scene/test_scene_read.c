@@ -224,6 +224,101 @@ static void wording_does_not_matter(void **state)
     scene_free(third);
 }
 
+/* UTF-8 of a code point. */
+static int put_character(char *to, unsigned c)
+{
+    if (c < 0x80) return to[0] = (char)c, 1;
+    if (c < 0x800) return to[0] = (char)(0xc0 | c >> 6), to[1] = (char)(0x80 | (c & 0x3f)), 2;
+    if (c < 0x10000) {
+        to[0] = (char)(0xe0 | c >> 12);
+        to[1] = (char)(0x80 | (c >> 6 & 0x3f));
+        to[2] = (char)(0x80 | (c & 0x3f));
+        return 3;
+    }
+    to[0] = (char)(0xf0 | c >> 18);
+    to[1] = (char)(0x80 | (c >> 12 & 0x3f));
+    to[2] = (char)(0x80 | (c >> 6 & 0x3f));
+    to[3] = (char)(0x80 | (c & 0x3f));
+    return 4;
+}
+
+/* The same title and hash from the scene with all defaults. */
+static void reads_back(struct fixture *f, const char *title)
+{
+    struct scene *scene = fixture_read(f, NULL, 0);
+    if (title) assert_string_equal(scene->title, title);
+    struct scene_errors errors = {0};
+    struct scene *again =
+        scene_read_text(f->path, scene->resolved, strlen(scene->resolved), NULL, 0, &errors);
+    for (int k = 0; k < errors.n; k++) print_error("%s\n", errors.text[k]);
+    assert_non_null(again);
+    assert_string_equal(again->title, scene->title);
+    assert_string_equal(again->resolved, scene->resolved);
+    assert_int_equal(again->hash, scene->hash);
+    scene_free(again);
+    scene_free(scene);
+}
+
+/* Every code point in a title, by its escape and as it is where YAML takes it. */
+static void characters(void **state)
+{
+    enum { BATCH = 2048 };
+    struct fixture *f = *state;
+    char *escaped = fail_alloc(12 * BATCH + 1000), *raw = fail_alloc(4 * BATCH + 1000),
+         *title = fail_alloc(4 * BATCH + 1);
+    for (unsigned first = 0; first < 0x110000; first += BATCH) {
+        size_t e = (size_t)sprintf(escaped, "title: \"x"), r = (size_t)sprintf(raw, "title: 'x"),
+               t = (size_t)sprintf(title, "x");
+        for (unsigned c = first; c < first + BATCH; c++) {
+            if (c == 0 || (c >= 0xd800 && c < 0xe000)) continue;
+            e += (size_t)sprintf(escaped + e, "\\U%08x", c);
+            t += (size_t)put_character(title + t, c);
+            bool is_refused = c < 0x20 || c == 0x7f || (c >= 0x80 && c < 0xa0 && c != 0x85) ||
+                              c == '\'' || c == 0xfffe || c == 0xffff;
+            if (!is_refused) r += (size_t)put_character(raw + r, c);
+        }
+        title[t] = 0;
+        sprintf(escaped + e, "\"\n%s", SMALL);
+        sprintf(raw + r, "'\n%s", SMALL);
+        fixture_scene(f, escaped);
+        reads_back(f, title);
+        fixture_scene(f, raw);
+        reads_back(f, NULL);
+    }
+    free(escaped);
+    free(raw);
+    free(title);
+}
+
+/* A name is a key in the scene with all defaults. */
+static void long_names(void **state)
+{
+    struct fixture *f = *state;
+    char name[1200];
+    for (int n = 900; n <= 1100; n += 100) {
+        memset(name, 'q', sizeof name);
+        name[n] = 0;
+        char *text = fail_format("title: t\nmethod: particles\ntime: {end: 1, step: 1e-3}\n"
+                                 "materials: {? %s : {density: 1}}\n"
+                                 "elements: [{name: %s, material: %s, file: bed.csv}]\n"
+                                 "contacts: [{between: [%s, %s], normal: {law: linear, "
+                                 "stiffness: 1, damping_ratio: 0}}]\n",
+            name, name, name, name, name);
+        fixture_write(f, "bed.csv", "", 0);
+        fixture_scene(f, text);
+        free(text);
+        if (n <= 1000) {
+            reads_back(f, "t");
+            continue;
+        }
+        struct scene_errors errors = {0};
+        assert_null(scene_read(f->path, NULL, 0, &errors));
+        assert_true(errors.n > 0);
+        assert_non_null(strstr(errors.text[0], "a name is at most 1000 bytes long"));
+        scene_errors_free(&errors);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -235,6 +330,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(
             smallest_scene_has_defaults, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(wording_does_not_matter, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(characters, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(long_names, fixture_setup, fixture_teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

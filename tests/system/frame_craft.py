@@ -183,7 +183,7 @@ PARTICLES = {
     "flag too large": attribute("stale", numpy.int64(2**40)),
     **contents(
         {
-            "elements": (["id"], ["position", "velocity", "orientation", "reference", "reach"]),
+            "elements": (["id"], ["position", "velocity", "reference", "reach"]),
             "pairs": (["id", "partner"], ["history"]),
             "wall_contacts": (["id"], ["history"]),
         }

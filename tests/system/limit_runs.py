@@ -2,6 +2,7 @@
 """Extreme numbers in a scene: they have their effect, or are refused with a message."""
 import json
 import os
+import re
 
 import cli
 
@@ -39,6 +40,25 @@ class Directions(cli.Case):
                 digests.add(self.digest(long, f"{wall[10:15]}{last[:-1]}"))
             self.assertEqual(len(digests), 1, wall)
             self.assertNotIn(free, digests)
+
+
+class Texts(cli.Case):
+    def test_resume_reads_what_run_accepts(self):
+        """Characters that YAML takes for line breaks, or only as escapes, and the longest name."""
+        self.put("e.csv", "x,y,z,radius\n0,0.3,0.06,0.05\n")
+        text = SCENE.replace("WALL", PLANE).replace("{a: {density", "{? NAME : {density")
+        text = text.replace("[a, a]", "[NAME, NAME]").replace("material: a", "material: NAME")
+        title = (
+            'title: "\\x80\\x9f a\\Nb \\u2028\\u2029 \\uFFFE\\uFEFF \\t\\r\\n\\e \\U0010FFFF "\n'
+        )
+        self.put("s.yaml", title + text.replace("NAME", 1000 * "q"))
+        run = self.call("run", "s.yaml", "-o", "d", "--quiet", "--steps", "5")
+        self.assertEqual((run.code, run.err), (0, []))
+        run = self.call("resume", "d", "--quiet")
+        self.assertEqual((run.code, run.err), (0, []))
+        said = [self.call("check", path).out for path in ("s.yaml", "d/resolved.yaml")]
+        hashes = [re.search("hash ([0-9a-f]{16})", text)[1] for text in said]
+        self.assertEqual(hashes[0], hashes[1])
 
 
 if __name__ == "__main__":
