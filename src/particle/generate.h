@@ -29,10 +29,22 @@ struct elements_host {
  *       keep neighbours apart.
  *   File: CSV, first line names the columns.
  * Then checks that no two centres coincide (nearer than 1e-3 of the smaller radius, periodic images
- * included) and that all centres are in the domain's box. NULL with messages in `errors`, each with
+ * included), that all centres are in the domain's box and that no two elements overlap by more than
+ * domain.start_overlap. NULL with messages in `errors`, each with
  * the file and line that it is about, if anything is wrong. Not collective. */
 struct elements_host *generate_elements(const struct scene *scene, struct scene_errors *errors);
 void generate_free(struct elements_host *elements);
+
+/* Pairs of elements that overlap, periodic images included, and the one that does so most. */
+struct generate_overlaps {
+    int64_t n;
+    double share, depth; /* [1] of the smaller radius, [m] */
+    int64_t element[2];  /* -1: none */
+};
+struct generate_overlaps generate_overlaps(
+    const struct scene *scene, const struct elements_host *elements);
+/* From here on [1] an overlap at the start is worth a warning. */
+#define GENERATE_DEEP 0.05
 
 /* [m]; infinity if there are none. */
 double generate_smallest_radius(const struct elements_host *elements);

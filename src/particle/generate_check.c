@@ -176,12 +176,30 @@ static void check_period(
     }
 }
 
+static void check_overlaps(
+    const struct scene *scene, const struct elements_host *e, struct scene_errors *errors)
+{
+    struct generate_overlaps all = generate_overlaps(scene, e);
+    if (!(all.share > scene->domain.start_overlap)) return;
+    int64_t i = all.element[0], j = all.element[1];
+    const double *x = e->x + 3 * j;
+    scene_errors_add(errors,
+        "%s:%d: element %lld of group '%s' and element %lld of group '%s' at (%g, %g, %g) overlap "
+        "by %.3g m, %.3g of the smaller radius, one of %lld pairs that overlap at the start; "
+        "domain.start_overlap, the most that is accepted, is %g",
+        scene->path, group_line(scene, e, j), (long long)i, group_name(scene, e, i), (long long)j,
+        group_name(scene, e, j), x[0], x[1], x[2], all.depth, all.share, (long long)all.n,
+        scene->domain.start_overlap);
+}
+
 void generate_check(
     const struct scene *scene, const struct elements_host *elements, struct scene_errors *errors)
 {
+    int before = errors->n;
     check_domain(scene, elements, errors);
     check_period(scene, elements, errors);
     check_coincidence(scene, elements, errors);
+    if (errors->n == before) check_overlaps(scene, elements, errors);
 }
 
 /* One sphere in one wall. */

@@ -101,6 +101,22 @@ void particle_plan(struct sim *s)
     set_step(s);
 }
 
+/* Of a run that begins; only rank 0 speaks. */
+static void warn_of_overlaps(struct sim *s)
+{
+    if (s->from || s->comm->rank != 0) return;
+    struct generate_overlaps all = generate_overlaps(s->scene, s->particle->first);
+    if (all.share > GENERATE_DEEP)
+        log_warn(s->log,
+            "%lld pairs overlap at the start, elements %lld and %lld by %.3g m, %.3g of the "
+            "smaller radius; they will fly apart",
+            (long long)all.n, (long long)all.element[0], (long long)all.element[1], all.depth,
+            all.share);
+    else if (all.n > 0)
+        log_print(s->log, "%lld pairs overlap at the start, by up to %.3g of the smaller radius",
+            (long long)all.n, all.share);
+}
+
 void particle_warn(struct sim *s)
 {
     struct particle_run *run = s->particle;
@@ -109,4 +125,5 @@ void particle_warn(struct sim *s)
         s->scene, run->first, limit_speed(s->scene, run->walls, run->first), s->dt, &warnings);
     for (int i = 0; i < warnings.n; i++) log_warn(s->log, "%s", warnings.text[i]);
     scene_errors_free(&warnings);
+    warn_of_overlaps(s);
 }

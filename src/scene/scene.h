@@ -186,6 +186,7 @@ struct domain {
     bool has_box;
     double min[3], max[3]; /* [m]; needed for periodic directions */
     bool remove_outside;
+    double start_overlap; /* [1] of the smaller radius, the most of two particles at time 0 */
 };
 
 enum partition_method { PARTITION_GEOMETRIC, PARTITION_INTERACTIONS, PARTITION_GRAPH };

@@ -272,6 +272,10 @@ STL_KEYS("elements[].fill.region", element_group, region.),
 {"domain.remove_outside", KEY_BOOL, .fallback = "false", .at = AT(scene, domain.remove_outside),
     .text = "particles that leave the domain are removed; otherwise the first one that leaves a "
         "given box ends the run"},
+{"domain.start_overlap", KEY_NUMBER, .fallback = "0.5", .range = FROM_ZERO,
+    .at = AT(scene, domain.start_overlap),
+    .text = "largest overlap of two particles at the start, as a share of the smaller radius; a "
+        "scene with more is refused"},
 
 {"partition", KEY_MAP, .fallback = "{}",
     .text = "domain decomposition: which rank owns which particles or cells"},
