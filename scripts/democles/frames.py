@@ -2,6 +2,7 @@
 and the resolved scene as numbers."""
 import contextlib
 import functools
+import json
 import os
 import pathlib
 import resource
@@ -16,6 +17,20 @@ import yaml
 def paths(folder):
     """The frames of a run, in order."""
     return sorted(pathlib.Path(folder).glob("frame_[0-9]*.hdf"))
+
+
+def shown(folder):
+    """Those of `output.every`, without checkpoints, so that a film runs at an even pace; of an
+    older run all."""
+    series = pathlib.Path(folder) / "frames.hdf.series"
+    if not series.exists():
+        return paths(folder)
+    try:
+        names = [entry["name"] for entry in json.loads(series.read_text())["files"]]
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise SystemExit(f"{series}: not a list of frames: {error}") from error
+    listed = [path for path in paths(folder) if path.name in set(names)]
+    return listed or paths(folder)
 
 
 def scene(folder):

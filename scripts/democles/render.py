@@ -3,7 +3,7 @@ solid with its displacements magnified.
 
     scripts/render.py DIR                    DIR/overview.png: up to four moments, side by side
     scripts/render.py DIR --frame last       DIR/frame_000123.png: one, by number, `first`, `last`
-    scripts/render.py DIR --film             DIR/film.mp4: all frames
+    scripts/render.py DIR --film             DIR/film.mp4: the frames of output.every
 
 Works without a display (it starts one, Xvfb)."""
 import argparse
@@ -41,7 +41,9 @@ def arguments():
         "--frame", metavar="N", type=frame_name, help="draws one frame: its number, first, or last"
     )
     parser.add_argument(
-        "--film", action="store_true", help="draws all frames, as an MP4 animation (needs ffmpeg)"
+        "--film",
+        action="store_true",
+        help="draws the frames of output.every, as an MP4 animation (needs ffmpeg)",
     )
     parser.add_argument(
         "--field",

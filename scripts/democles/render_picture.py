@@ -328,7 +328,7 @@ def write_picture(options, paths, size):
 
 def draw(options):
     """The picture or film that the options ask for; returns its path."""
-    paths = frames.paths(options.dir)
+    paths = (frames.shown if options.film else frames.paths)(options.dir)
     if not paths:
         sys.exit(f"render: no frames in {options.dir}")
     size = options.size or ([1280, 720] if options.film else [1600, 1000])

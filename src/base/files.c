@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <unistd.h>
 
 static bool failed(char error[FILES_ERROR_SIZE], const char *what, const char *path)
@@ -17,9 +18,21 @@ static bool failed(char error[FILES_ERROR_SIZE], const char *what, const char *p
     return false;
 }
 
-char *files_read(const char *path, size_t *n, char error[FILES_ERROR_SIZE])
+FILE *files_input(const char *path)
 {
     FILE *file = fopen(path, "rb");
+    struct stat status;
+    if (!file || fstat(fileno(file), &status) != 0 || isatty(fileno(file))) return file;
+    bool is_null = S_ISCHR(status.st_mode) && status.st_rdev == makedev(1, 3);
+    if (is_null || (!S_ISCHR(status.st_mode) && !S_ISBLK(status.st_mode))) return file;
+    fclose(file);
+    errno = ENOTSUP;
+    return NULL;
+}
+
+char *files_read(const char *path, size_t *n, char error[FILES_ERROR_SIZE])
+{
+    FILE *file = files_input(path);
     if (!file) {
         failed(error, "open", path);
         return NULL;

@@ -5,12 +5,16 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
 enum { FILES_ERROR_SIZE = 512 };
 
 /* The whole file, NUL-terminated (not counted in `n`), in fresh memory owned by the caller; NULL
  * and `error` on failure. */
 char *files_read(const char *path, size_t *n, char error[FILES_ERROR_SIZE]);
+
+/* Opens a file for reading; NULL and errno. What never ends, such as /dev/zero, is not opened. */
+FILE *files_input(const char *path);
 
 /* Whether an ordinary file, not a link, is there and begins with `text`. */
 bool files_begins(const char *path, const char *text);

@@ -4,6 +4,7 @@
  * leaves its cube of edge s, so spheres never overlap, whatever the random numbers are. Costs one
  * test per site; with gravity along an axis, only up to the layer where `count` is reached. */
 #include "base/vector.h"
+#include "base/whole.h"
 #include "comm/fail.h"
 #include "generate_parts.h"
 #include "results/digest.h"
@@ -15,6 +16,9 @@
 
 /* Rounding that a sphere may stick out of its region by, in radii. */
 static const double slack = 1e-9;
+
+/* Sites that may be looked at: as many as there may be elements. */
+static const double most_sites = INT32_MAX / 2;
 
 /* Random number in [0, 1) as a function of its key: splitmix64's finaliser over seed, site and
  * stream (Steele, Lea, Flood 2014). */
@@ -55,7 +59,7 @@ static void place_lattice(struct fill *fill)
     fill->spacing = (1 + fill->group->jitter) * fill->group->diameter[1];
     for (int a = 0; a < 3; a++) {
         double length = fill->shape.high[a] - fill->shape.low[a];
-        fill->sites[a] = (int64_t)fmax(0, floor(length / fill->spacing + slack));
+        fill->sites[a] = whole_floor(fmax(0, length / fill->spacing + slack));
         double rest = length - (double)fill->sites[a] * fill->spacing, share = 0.5;
         if (a == fill->layers_along && fill->is_straight) share = fill->up[a] > 0 ? 0 : 1;
         fill->origin[a] = fill->shape.low[a] + share * rest + 0.5 * fill->spacing;
@@ -73,8 +77,9 @@ struct site {
 static bool make_site(const struct fill *fill, const int64_t ijk[3], struct site *site)
 {
     const struct element_group *group = fill->group;
-    uint64_t number = (uint64_t)((ijk[2] * fill->sites[1] + ijk[1]) * fill->sites[0] + ijk[0]),
-             seed = group->seed;
+    /* modulo 2^64, where there are more sites than that */
+    uint64_t column = (uint64_t)ijk[2] * (uint64_t)fill->sites[1] + (uint64_t)ijk[1],
+             number = column * (uint64_t)fill->sites[0] + (uint64_t)ijk[0], seed = group->seed;
     site->number = number;
     site->radius = 0.5 * (group->diameter[0] + (group->diameter[1] - group->diameter[0]) *
                                                    random_at(seed, number, 3));
@@ -91,25 +96,51 @@ static bool make_site(const struct fill *fill, const int64_t ijk[3], struct site
 struct sites {
     struct site *site;
     size_t n, room;
+    double seen;
 };
 
-/* All sites that fit, or with straight gravity at least `enough` of the lowest ones. */
-static void collect(const struct fill *fill, size_t enough, struct sites *sites)
+static void look_at(const struct fill *fill, const int64_t ijk[3], struct sites *sites)
+{
+    if (sites->n == sites->room) {
+        sites->room = sites->room ? 2 * sites->room : 1024;
+        sites->site = fail_realloc(sites->site, sites->room * sizeof *sites->site);
+    }
+    sites->n += make_site(fill, ijk, sites->site + sites->n);
+    sites->seen++;
+}
+
+/* Whether gravity is along an axis to the last digit: the sites of a layer are then all as high,
+ * and come in the order of their numbers. */
+static bool is_level(const struct fill *fill)
+{
+    int n_zero = 0;
+    for (int a = 0; a < 3; a++) n_zero += !(fabs(fill->up[a]) > 0);
+    return fill->is_straight && n_zero == 2;
+}
+
+/* All sites that fit, or with straight gravity at least `enough` of the lowest ones (0: all).
+ * False where there are too many to look at: of all, or with `enough` in a layer. */
+static bool collect(const struct fill *fill, size_t enough, struct sites *sites)
 {
     int up = fill->layers_along, b = up == 0 ? 1 : 0, c = up == 2 ? 1 : 2;
+    bool few = fill->is_straight && enough, stops = is_level(fill) && enough;
+    sites->seen = (double)fill->sites[b] * (double)fill->sites[c] *
+                  (few ? fmin((double)fill->sites[up], 1) : (double)fill->sites[up]);
+    if (sites->seen > most_sites) return false;
+    sites->seen = 0;
     for (int64_t layer = 0; layer < fill->sites[up]; layer++) {
         int64_t ijk[3];
         ijk[up] = fill->up[up] > 0 ? layer : fill->sites[up] - 1 - layer;
-        for (ijk[c] = 0; ijk[c] < fill->sites[c]; ijk[c]++)
+        for (ijk[c] = 0; ijk[c] < fill->sites[c]; ijk[c]++) {
+            if (sites->seen > most_sites) return false;
             for (ijk[b] = 0; ijk[b] < fill->sites[b]; ijk[b]++) {
-                if (sites->n == sites->room) {
-                    sites->room = sites->room ? 2 * sites->room : 1024;
-                    sites->site = fail_realloc(sites->site, sites->room * sizeof *sites->site);
-                }
-                sites->n += make_site(fill, ijk, sites->site + sites->n);
+                look_at(fill, ijk, sites);
+                if (stops && sites->n >= enough) return true;
             }
-        if (fill->is_straight && enough && sites->n >= enough) return;
+        }
+        if (few && sites->n >= enough) return true;
     }
+    return true;
 }
 
 static int compare_sites(const void *a, const void *b)
@@ -130,8 +161,12 @@ void generate_fill(
     if (!text) {
         find_up(&fill, scene->gravity);
         place_lattice(&fill);
-        collect(&fill, count, &sites);
-        if (sites.n == 0)
+        if (!collect(&fill, count, &sites))
+            text =
+                fail_format("elements of %g m have %.3g sites or more in the bounding box of the "
+                            "region%s: too many, at most %.4g",
+                    of->diameter[1], sites.seen, count ? ", or in a layer of it" : "", most_sites);
+        else if (sites.n == 0)
             text = fail_format("no element of %g m fits into the region", of->diameter[1]);
         else if (sites.n < count)
             text =

@@ -1,6 +1,7 @@
 #include "output_dir.h"
 #include "comm/fail.h"
 #include "base/files.h"
+#include "frame_list.h"
 #include "log.h"
 #include "output_names.h"
 #include "series.h"
@@ -193,6 +194,14 @@ static bool is_other_series(const char *dir, const char *name)
     return other;
 }
 
+static bool is_other_list(const char *dir)
+{
+    char *path = fail_format("%s/" FRAME_LIST_NAME, dir);
+    bool other = exists(dir, FRAME_LIST_NAME) && !frame_list_is_ours(path);
+    free(path);
+    return other;
+}
+
 /* Whoever touches a file `stop` asks a run to stop; what is longer is a file of its own. */
 static bool is_other_stop(const char *dir)
 {
@@ -214,6 +223,7 @@ static bool is_other(const struct output_request *request, const char *scene, si
     else if (exists(dir, "log.txt")) found = "a file log.txt that no run has written";
     else if (request->trace && exists(dir, "trace.json"))
         found = "a file trace.json that no run has written";
+    else if (is_other_list(dir)) found = "a file " FRAME_LIST_NAME " that no run has written";
     else if (is_other_stop(dir)) found = "a file stop that is not empty and would end the run";
     snprintf(what, room, "%s", found ? found : "");
     return found;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/files.h"
+#include "frame_list.h"
 #include "snapshot.h"
 
 static bool is_one_of(const char *name, const char *const *list)
@@ -16,7 +17,7 @@ static bool is_one_of(const char *name, const char *const *list)
 static bool is_unfinished(const char *name)
 {
     static const char *const replaced[] = {
-        "run.json", "scene.yaml", "resolved.yaml", "trace.json", NULL};
+        "run.json", "scene.yaml", "resolved.yaml", "trace.json", FRAME_LIST_NAME, NULL};
     char *whole = files_tmp_of(name);
     bool ours = whole && (snapshot_index(whole) >= 0 || is_one_of(whole, replaced));
     free(whole);
@@ -40,7 +41,8 @@ bool output_names_are_results(const char *name)
 
 bool output_names_are_ours(const char *name)
 {
-    static const char *const single[] = {"log.txt", "run.balance.csv", "trace.json", "stop", NULL};
+    static const char *const single[] = {
+        "log.txt", "run.balance.csv", "trace.json", "stop", FRAME_LIST_NAME, NULL};
     return output_names_are_results(name) || is_unfinished(name) || is_failed_build(name) ||
            is_one_of(name, single);
 }

@@ -6,6 +6,7 @@
 
 #include "comm/fail.h"
 #include "measures.h"
+#include "results/frame_list.h"
 #include "results/output_dir.h"
 #include "record.h"
 #include "resume.h"
@@ -15,6 +16,7 @@
 
 struct outputs {
     struct measures *measures;
+    struct frame_list *list;
     int64_t frame_every, checkpoint_every; /* steps; 0: first and last only */
     int64_t n_frame;
     int64_t frame_step; /* of the last frame; -1: none */
@@ -25,6 +27,20 @@ struct outputs {
 static int64_t steps_of(const struct sim *s, double every)
 {
     return every > 0 ? whole_steps(every, s->dt) : 0;
+}
+
+/* Frames that output.every asks for, at equal distances; without it the first and the last. */
+static bool is_listed(const struct sim *s, int64_t step)
+{
+    int64_t every = s->output->frame_every;
+    if (every > 0) return step % every == 0;
+    return step == 0 || step == s->n_step || s->rest.reached;
+}
+
+static void list_frame(struct sim *s, int64_t index)
+{
+    if (is_listed(s, s->output->frame_step))
+        frame_list_add(s->output->list, index, (double)s->output->frame_step * s->dt);
 }
 
 struct outputs *output_create(struct sim *s)
@@ -44,6 +60,10 @@ struct outputs *output_create(struct sim *s)
     out->checkpoint_every = steps_of(s, s->scene->output.checkpoint_every);
     out->frame_step = s->from ? s->from->step : -1;
     out->n_frame = s->from ? s->from->index + 1 : 0;
+    out->list = frame_list_create(s->comm, s->options->dir, out->n_frame - 1);
+    s->output = out;
+    /* the run before may have been killed before it could list its last frame */
+    if (s->from) list_frame(s, s->from->index);
     free(name);
     return out;
 }
@@ -52,6 +72,7 @@ void output_free(struct outputs *out)
 {
     if (!out) return;
     measures_free(out->measures);
+    frame_list_free(out->list);
     free(out);
 }
 
@@ -82,6 +103,7 @@ void output_write(struct sim *s, bool last)
         measures_flush(out->measures);
         s->ops->frame(s, out->n_frame++);
         out->frame_step = s->step;
+        list_frame(s, out->n_frame - 1);
     }
     timer_end(&s->timers, TIMER_OUTPUT);
     /* what the output exchanges is the output's */

@@ -6,13 +6,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/files.h"
 #include "comm/fail.h"
 #include "scene_reader.h"
 
 /* The whole file, owned by the caller; NULL and an error where it cannot be read. */
 static char *read_file(const char *path, size_t *n, struct scene_errors *errors)
 {
-    FILE *file = fopen(path, "rb");
+    FILE *file = files_input(path);
     char *bytes = NULL;
     *n = 0;
     if (file) {

@@ -9,12 +9,13 @@
 #include "comm/fail.h"
 
 /* Aliases could blow a few lines up to any size, or contain themselves. */
-enum { MAX_DEPTH = 64, MAX_NODES = 1000000 };
+enum { MAX_DEPTH = 64, MAX_NODES = 1000000, MAX_BYTES = 1 << 26 };
 
 struct conversion {
     yaml_document_t *document;
     struct scene_yaml_error *error;
     int set, n_node;
+    size_t n_byte; /* of text, as often as it is said */
 };
 
 static struct scene_node *new_node(enum scene_node_kind kind, int set, int line, int column)
@@ -68,6 +69,9 @@ static struct scene_node *convert(struct conversion *c, int id, int depth)
         const char *bytes = (const char *)from->data.scalar.value;
         if (strlen(bytes) != from->data.scalar.length)
             return refuse(c, from, node, "text with a null character");
+        c->n_byte += from->data.scalar.length;
+        if (c->n_byte > MAX_BYTES)
+            return refuse(c, from, node, "too large: bulk data belong into files of their own");
         node->text = fail_strdup(bytes);
         node->plain = from->data.scalar.style == YAML_PLAIN_SCALAR_STYLE;
     } else if (from->type == YAML_SEQUENCE_NODE) {

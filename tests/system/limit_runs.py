@@ -3,6 +3,9 @@
 import json
 import os
 import re
+import resource
+import subprocess
+import time
 
 import cli
 
@@ -59,6 +62,81 @@ class Texts(cli.Case):
         said = [self.call("check", path).out for path in ("s.yaml", "d/resolved.yaml")]
         hashes = [re.search("hash ([0-9a-f]{16})", text)[1] for text in said]
         self.assertEqual(hashes[0], hashes[1])
+
+
+class Bounded(cli.Case):
+    """Small scenes that ask for more than there can be: a message at once, and little memory."""
+
+    def refused(self, scene, what, *args):
+        self.put("s.yaml", scene)
+        began = time.monotonic()
+        run = subprocess.run(
+            [cli.DEMOCLES, "check", "s.yaml", *args],
+            cwd=self.dir,
+            capture_output=True,
+            text=True,
+            timeout=60,
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (4 << 30, 4 << 30)),
+        )
+        self.assertEqual(run.returncode, 3, run.stderr)
+        self.assertRegex(run.stderr, what)
+        self.assertLess(time.monotonic() - began, 30)
+
+    def test_sites_of_a_fill(self):
+        fill = SCENE.replace("WALL", PLANE).replace(
+            "file: e.csv",
+            "shape: {sphere: {diameter: SIZE}}, "
+            "fill: {region: {box: {min: [0, 0, 1], max: [LONG, 1, 2]}}COUNT}",
+        )
+        for size, long, count in (
+            ("1e-5", "1", ""),
+            ("1e-6", "1", ", count: 10"),
+            ("0.1", "1e300", ", count: 10"),
+            ("0.1", "1e300", ""),
+            ("1e-300", "1", ", count: 1"),
+        ):
+            text = fill.replace("SIZE", size).replace("LONG", long).replace("COUNT", count)
+            for gravity in ("[0, 0, 0]", "[0, 0, -9.81]", "[1, 2, -3]"):
+                self.refused(
+                    text, "sites or more .*: too many, at most", "--set", "gravity=" + gravity
+                )
+
+    def test_few_of_many(self):
+        """Count is looked at while sites are collected: a tall region is no obstacle."""
+        self.put(
+            "s.yaml",
+            SCENE.replace("WALL", PLANE).replace(
+                "file: e.csv",
+                "shape: {sphere: {diameter: 0.1}}, fill: {region: {box: "
+                "{min: [0, 0, 1], max: [1, 1, 1e300]}}, count: 10}",
+            ),
+        )
+        run = self.call("check", "s.yaml")
+        self.assertEqual((run.code, run.err), (0, []))
+        self.assertIn("particles: 10\n", run.out)
+
+    def test_cells_of_a_body(self):
+        body = (
+            "method: lattice\ntime: {end: 1}\nmaterials: {a: {density: 1, young: 1, poisson: 0}}\n"
+            "bodies: [{name: b, material: a, cell: CELL, "
+            "shape: {box: {min: [0, 0, 0], max: [MAX, 1, 1]}}}]\n"
+        )
+        for cell, most in (("1e-5", "1"), ("1e-300", "1"), ("0.1", "1e300")):
+            text = body.replace("CELL", cell).replace("MAX", most)
+            self.refused(text, "into too many cells")
+
+    def test_files_that_never_end(self):
+        self.refused(SCENE.replace("WALL", PLANE).replace("e.csv", "/dev/zero"), "not a file")
+        self.refused(SCENE.replace("WALL", "surface: {stl: /dev/zero}"), "not a file")
+        run = self.call("check", "/dev/zero")
+        self.assertEqual(run.code, 3)
+        self.assertEqual(run.err, ["/dev/zero: cannot be read: Operation not supported"])
+
+    def test_aliases(self):
+        """A text of 100 kB, said 100,000 times."""
+        lines = ["title: &a0 " + 100000 * "x"]
+        lines += [f"t{k}: &a{k} [" + ", ".join(10 * [f"*a{k - 1}"]) + "]" for k in range(1, 6)]
+        self.refused("\n".join(lines) + "\n", "too large: bulk data belong")
 
 
 if __name__ == "__main__":
