@@ -14,9 +14,9 @@
  * neighbours. */
 static const double dense_pairs = 4.5;
 
-static void print_overlaps(const struct scene *scene, const struct elements_host *elements)
+static void print_overlaps(const struct elements_host *elements)
 {
-    struct generate_overlaps all = generate_overlaps(scene, elements);
+    struct generate_overlaps all = elements->overlaps;
     if (all.n == 0) return;
     printf("    %spairs that overlap at the start: %lld, elements %lld and %lld by %.4g m, %.3g of "
            "the smaller radius\n",
@@ -45,7 +45,7 @@ static void print_elements(const struct scene *scene, const struct elements_host
         else if (n > 0) printf("diameter %.4g m, ", 2 * smallest);
         printf("%.4g kg in all\n", mass);
     }
-    print_overlaps(scene, elements);
+    print_overlaps(elements);
 }
 
 static void print_walls(const struct scene *scene, const struct walls *walls)

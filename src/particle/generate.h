@@ -10,19 +10,27 @@
 
 struct walls;
 
+/* Pairs of elements that overlap, periodic images included, and the one that does so most. */
+struct generate_overlaps {
+    int64_t n;
+    double share, depth; /* [1] of the smaller radius, [m] */
+    int64_t element[2];  /* -1: none */
+};
+
 /* All elements in the order of groups; the global id is the index. */
 struct elements_host {
     int64_t n;
-    double *x;      /* [n][3] [m] */
-    double *v, *w;  /* [n][3] [m/s], [rad/s] */
-    double *radius; /* [n] [m] */
-    int *material;  /* [n] index into scene.material */
-    int *group;     /* [n] index into scene.group */
+    double *x;                         /* [n][3] [m] */
+    double *v, *w;                     /* [n][3] [m/s], [rad/s] */
+    double *radius;                    /* [n] [m] */
+    int *material;                     /* [n] index into scene.material */
+    int *group;                        /* [n] index into scene.group */
+    struct generate_overlaps overlaps; /* as generate_elements finds them */
 };
 
 /* Makes the elements of all groups.
  *   Fill: on a cubic lattice of spacing (1 + jitter) times the largest diameter, the sites whose
- *     whole sphere lies in the region, `count` of them
+ *     whole sphere lies in the region and overlaps no element of a group before, `count` of them
  *     from the lowest up (against gravity; without gravity along z), layer by layer. Diameter and
  *       displacement of a site are random numbers of
  *     (seed, site): they do not depend on count. Displacements of up to jitter/2 diameters per axis
@@ -35,12 +43,6 @@ struct elements_host {
 struct elements_host *generate_elements(const struct scene *scene, struct scene_errors *errors);
 void generate_free(struct elements_host *elements);
 
-/* Pairs of elements that overlap, periodic images included, and the one that does so most. */
-struct generate_overlaps {
-    int64_t n;
-    double share, depth; /* [1] of the smaller radius, [m] */
-    int64_t element[2];  /* -1: none */
-};
 struct generate_overlaps generate_overlaps(
     const struct scene *scene, const struct elements_host *elements);
 /* From here on [1] an overlap at the start is worth a warning. */

@@ -179,7 +179,7 @@ static void check_period(
 static void check_overlaps(
     const struct scene *scene, const struct elements_host *e, struct scene_errors *errors)
 {
-    struct generate_overlaps all = generate_overlaps(scene, e);
+    struct generate_overlaps all = e->overlaps;
     if (!(all.share > scene->domain.start_overlap)) return;
     int64_t i = all.element[0], j = all.element[1];
     const double *x = e->x + 3 * j;
@@ -193,13 +193,15 @@ static void check_overlaps(
 }
 
 void generate_check(
-    const struct scene *scene, const struct elements_host *elements, struct scene_errors *errors)
+    const struct scene *scene, struct elements_host *elements, struct scene_errors *errors)
 {
     int before = errors->n;
     check_domain(scene, elements, errors);
     check_period(scene, elements, errors);
     check_coincidence(scene, elements, errors);
-    if (errors->n == before) check_overlaps(scene, elements, errors);
+    if (errors->n > before) return;
+    elements->overlaps = generate_overlaps(scene, elements);
+    check_overlaps(scene, elements, errors);
 }
 
 /* One sphere in one wall. */

@@ -1,8 +1,8 @@
 /* Fills a region with spheres on a jittered cubic lattice.
  *
  * Spacing s = (1 + jitter) d_max, displacement at most jitter d_max/2 per axis: a sphere never
- * leaves its cube of edge s, so spheres never overlap, whatever the random numbers are. Costs one
- * test per site; with gravity along an axis, only up to the layer where `count` is reached. */
+ * leaves its cube of edge s, so spheres never overlap, whatever the random numbers are. Sites that
+ * overlap an element of a group before are left out. Costs one test per site; with gravity along an axis, only up to the layer where `count` is reached. */
 #include "base/vector.h"
 #include "base/whole.h"
 #include "comm/fail.h"
@@ -34,9 +34,10 @@ struct fill {
     struct region_shape shape;
     double spacing, origin[3]; /* first site [m] */
     int64_t sites[3];
-    double up[3];     /* unit vector against gravity */
-    int layers_along; /* axis nearest to it */
-    bool is_straight; /* gravity is along that axis */
+    double up[3];                      /* unit vector against gravity */
+    int layers_along;                  /* axis nearest to it */
+    bool is_straight;                  /* gravity is along that axis */
+    const struct generate_grid *there; /* elements of the groups before; NULL: none */
 };
 
 static void find_up(struct fill *fill, const double gravity[3])
@@ -73,7 +74,7 @@ struct site {
 };
 
 /* The sphere at lattice point ijk: displaced, of its own size; false if it is not all within the
- * region. */
+ * region, or where an element of a group before is. */
 static bool make_site(const struct fill *fill, const int64_t ijk[3], struct site *site)
 {
     const struct element_group *group = fill->group;
@@ -90,7 +91,8 @@ static bool make_site(const struct fill *fill, const int64_t ijk[3], struct site
                                  group->diameter[1];
         site->height += point * fill->up[a];
     }
-    return region_holds(&fill->shape, site->x, site->radius * (1 - slack));
+    return region_holds(&fill->shape, site->x, site->radius * (1 - slack)) &&
+           (!fill->there || generate_grid_is_free(fill->there, site->x, site->radius));
 }
 
 struct sites {
@@ -154,7 +156,9 @@ void generate_fill(
     struct generate_list *list, const struct scene *scene, int group, struct scene_errors *errors)
 {
     const struct element_group *of = scene->group + group;
-    struct fill fill = {.group = of};
+    struct generate_grid *there =
+        list->elements->n > 0 ? generate_grid_create(scene, list->elements) : NULL;
+    struct fill fill = {.group = of, .there = there};
     struct sites sites = {0};
     size_t count = (size_t)of->count;
     char *text = region_open(&fill.shape, &of->region);
@@ -167,10 +171,11 @@ void generate_fill(
                             "region%s: too many, at most %.4g",
                     of->diameter[1], sites.seen, count ? ", or in a layer of it" : "", most_sites);
         else if (sites.n == 0)
-            text = fail_format("no element of %g m fits into the region", of->diameter[1]);
+            text = fail_format("no element of %g m fits into the region%s", of->diameter[1],
+                there ? " beside those of the groups before" : "");
         else if (sites.n < count)
-            text =
-                fail_format("%zu elements were asked for, %zu fit into the region", count, sites.n);
+            text = fail_format("%zu elements were asked for, %zu fit into the region%s", count,
+                sites.n, there ? " beside those of the groups before" : "");
     }
     if (text)
         scene_errors_add(errors, "%s:%d: elements '%s': %s", scene->path, of->line, of->name, text);
@@ -181,5 +186,6 @@ void generate_fill(
     }
     free(text);
     free(sites.site);
+    generate_grid_free(there);
     region_close(&fill.shape);
 }

@@ -1,9 +1,9 @@
-/* Overlaps of particles at the start, whatever their source, in O(n) for any mixture of sizes.
+/* Which particles of a start overlap, in O(n) for any mixture of sizes.
  *
- * Particles are dealt to levels, r in [2^(l-1), 2^l), each with a grid of cells 2^(l+1) wide. A
- * particle looks for partners on its own level (lower index, so that a pair is found once) and on
- * higher ones: r_i + r_j is below a cell's width there, so 27 cells are enough, and particles that
- * do not overlap much are few in each. */
+ * Particles are dealt to levels, r in [2^(l-1), 2^l), each with a grid of cells as wide as its
+ * largest diameter. Of a pair the smaller one looks for the larger: r_i + r_j is at most a cell's
+ * width on its level, so 27 cells are enough, and particles that do not overlap much are few in
+ * each. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,13 +11,23 @@
 #include "comm/fail.h"
 #include "generate_parts.h"
 
-struct grid {
+struct generate_grid {
     const struct scene *scene;
     const struct elements_host *e;
-    int *level; /* [n_level] those that occur */
+    struct level {
+        int exponent;
+        double largest; /* radius on it [m] */
+    } * level;          /* [n_level] those that occur */
     int n_level;
+    double largest; /* radius [m] */
     uint64_t mask;
     int64_t *head, *next;
+};
+
+/* A sphere that looks for partners: element i, or -1 where it is none; where it is, or an image. */
+struct look {
+    int64_t i;
+    double x[3], radius;
     struct generate_overlaps found;
 };
 
@@ -28,7 +38,7 @@ static int level_of(double radius)
     return level;
 }
 
-static uint64_t hash(const struct grid *grid, int level, const double cell[3])
+static uint64_t hash(const struct generate_grid *grid, int level, const double cell[3])
 {
     uint64_t h = (uint64_t)(level + 4096);
     for (int a = 0; a < 3; a++) {
@@ -41,57 +51,80 @@ static uint64_t hash(const struct grid *grid, int level, const double cell[3])
     return h & grid->mask;
 }
 
-static void meet(struct grid *grid, int64_t i, const double x[3], int64_t j)
+static void cell_of(const struct level *level, const double x[3], double cell[3])
 {
-    const struct elements_host *e = grid->e;
-    double d2 = 0, sum = e->radius[i] + e->radius[j], least = fmin(e->radius[i], e->radius[j]);
-    for (int a = 0; a < 3; a++) d2 += (x[a] - e->x[3 * j + a]) * (x[a] - e->x[3 * j + a]);
-    if (!(d2 < sum * sum)) return;
-    struct generate_overlaps *found = &grid->found;
-    double depth = sum - sqrt(d2), share = depth / least;
-    if (!(depth > 1e-12 * sum)) return; /* they touch */
+    for (int a = 0; a < 3; a++) cell[a] = floor(x[a] / (2 * level->largest));
+}
+
+static double distance_squared(const double x[3], const double y[3])
+{
+    return (x[0] - y[0]) * (x[0] - y[0]) + (x[1] - y[1]) * (x[1] - y[1]) +
+           (x[2] - y[2]) * (x[2] - y[2]);
+}
+
+/* j overlaps, and is on that level; of a pair on one level the later one looks. */
+static void meet(
+    const struct generate_grid *grid, struct look *look, const struct level *level, int64_t j)
+{
+    double r = grid->e->radius[j], sum = look->radius + r;
+    bool is_own = look->i >= 0 && level->exponent == level_of(look->radius);
+    if (level_of(r) != level->exponent || (is_own && j >= look->i)) return;
+    double depth = sum - sqrt(distance_squared(look->x, grid->e->x + 3 * j)),
+           share = depth / fmin(look->radius, r);
+    if (!(depth > 1e-12 * sum)) return; /* they touch at most */
+    struct generate_overlaps *found = &look->found;
     found->n++;
     if (!(share > found->share)) return;
     found->share = share;
     found->depth = depth;
-    found->element[0] = i < j ? i : j;
-    found->element[1] = i < j ? j : i;
+    found->element[0] = look->i < j ? look->i : j;
+    found->element[1] = look->i < j ? j : look->i;
 }
 
-/* Partners of element i, seen at x: where it is, or an image of it. */
-static void look(struct grid *grid, int64_t i, const double x[3])
+/* Those in a cell of a level; at its place in the table others may be, too. */
+static void look_in_cell(const struct generate_grid *grid, struct look *look,
+    const struct level *level, const double cell[3])
 {
     const struct elements_host *e = grid->e;
-    int own = level_of(e->radius[i]);
-    for (int l = 0; l < grid->n_level; l++) {
-        int level = grid->level[l];
-        if (level < own) continue;
-        double width = ldexp(2, level), reach = e->radius[i] + ldexp(1, level), low[3], high[3],
-               cell[3];
-        for (int a = 0; a < 3; a++) {
-            low[a] = floor((x[a] - reach) / width);
-            high[a] = floor((x[a] + reach) / width);
-        }
-        for (cell[2] = low[2]; cell[2] <= high[2]; cell[2]++)
-            for (cell[1] = low[1]; cell[1] <= high[1]; cell[1]++)
-                for (cell[0] = low[0]; cell[0] <= high[0]; cell[0]++)
-                    for (int64_t j = grid->head[hash(grid, level, cell)]; j >= 0;
-                         j = grid->next[j]) {
-                        bool is_here = level_of(e->radius[j]) == level && (level > own || j < i);
-                        for (int a = 0; a < 3; a++)
-                            is_here = is_here && floor(e->x[3 * j + a] / width) >= cell[a] &&
-                                      floor(e->x[3 * j + a] / width) <= cell[a];
-                        if (is_here) meet(grid, i, x, j);
-                    }
+    for (int64_t j = grid->head[hash(grid, level->exponent, cell)]; j >= 0; j = grid->next[j]) {
+        double sum = look->radius + e->radius[j], at[3];
+        if (!(distance_squared(look->x, e->x + 3 * j) < sum * sum)) continue;
+        cell_of(level, e->x + 3 * j, at);
+        if (!memcmp(at, cell, sizeof at)) meet(grid, look, level, j);
     }
 }
 
-/* An image across each periodic face within reach, and across edges and corners. */
-static void look_with_images(struct grid *grid, int64_t i, double largest)
+static void look_on_level(
+    const struct generate_grid *grid, struct look *look, const struct level *level)
+{
+    double reach = look->radius + level->largest, low[3], high[3], cell[3], n = 1;
+    for (int a = 0; a < 3; a++) {
+        low[a] = floor((look->x[a] - reach) / (2 * level->largest));
+        high[a] = floor((look->x[a] + reach) / (2 * level->largest));
+        n *= high[a] - low[a] + 1;
+    }
+    if (n > (double)grid->e->n) { /* a large sphere among small ones, or few */
+        for (int64_t j = 0; j < grid->e->n; j++) meet(grid, look, level, j);
+        return;
+    }
+    for (cell[2] = low[2]; cell[2] <= high[2]; cell[2]++)
+        for (cell[1] = low[1]; cell[1] <= high[1]; cell[1]++)
+            for (cell[0] = low[0]; cell[0] <= high[0]; cell[0]++)
+                look_in_cell(grid, look, level, cell);
+}
+
+static void look_around(const struct generate_grid *grid, struct look *look)
+{
+    for (int l = 0; l < grid->n_level; l++)
+        if (look->i < 0 || grid->level[l].exponent >= level_of(look->radius))
+            look_on_level(grid, look, &grid->level[l]);
+}
+
+/* At x and at an image across each periodic face within reach, and across edges and corners. */
+static void look_with_images(const struct generate_grid *grid, struct look *look, const double x[3])
 {
     const struct domain *domain = &grid->scene->domain;
-    const double *x = grid->e->x + 3 * i;
-    double shift[3] = {0}, reach = grid->e->radius[i] + largest;
+    double shift[3] = {0}, reach = look->radius + grid->largest;
     for (int a = 0; a < 3; a++) {
         double length = domain->max[a] - domain->min[a];
         if (!domain->periodic[a]) continue;
@@ -99,50 +132,75 @@ static void look_with_images(struct grid *grid, int64_t i, double largest)
         else if (domain->max[a] - x[a] <= reach) shift[a] = -length;
     }
     for (int k = 0; k < 8; k++) {
-        double image[3];
         bool is_image = true; /* of a direction without a shift there is none */
         for (int a = 0; a < 3; a++) {
             bool shifted = k >> a & 1;
-            image[a] = x[a] + (shifted ? shift[a] : 0);
+            look->x[a] = x[a] + (shifted ? shift[a] : 0);
             is_image = is_image && (!shifted || shift[a] < 0 || shift[a] > 0);
         }
-        if (is_image) look(grid, i, image);
+        if (is_image) look_around(grid, look);
     }
 }
 
-static void put_levels(struct grid *grid)
+/* The level of a radius; made where it is the first there. */
+static struct level *level_for(struct generate_grid *grid, double radius)
 {
-    for (int64_t i = 0; i < grid->e->n; i++) {
-        int level = level_of(grid->e->radius[i]), l = 0;
-        while (l < grid->n_level && grid->level[l] != level) l++;
-        if (l < grid->n_level) continue;
+    int exponent = level_of(radius), l = 0;
+    while (l < grid->n_level && grid->level[l].exponent != exponent) l++;
+    if (l == grid->n_level) {
         grid->level = fail_realloc(grid->level, (size_t)++grid->n_level * sizeof *grid->level);
-        grid->level[l] = level;
+        grid->level[l] = (struct level){exponent, 0};
     }
+    grid->level[l].largest = fmax(grid->level[l].largest, radius);
+    return &grid->level[l];
+}
+
+struct generate_grid *generate_grid_create(const struct scene *scene, const struct elements_host *e)
+{
+    struct generate_grid *grid = fail_alloc(sizeof *grid);
+    *grid = (struct generate_grid){.scene = scene, .e = e, .mask = 1};
+    while (grid->mask < (uint64_t)e->n) grid->mask *= 2;
+    grid->head = fail_alloc(grid->mask * sizeof *grid->head);
+    grid->next = fail_alloc((size_t)e->n * sizeof *grid->next);
+    for (uint64_t h = 0; h < grid->mask; h++) grid->head[h] = -1;
+    grid->mask--;
+    for (int64_t i = 0; i < e->n; i++)
+        grid->largest = fmax(grid->largest, level_for(grid, e->radius[i])->largest);
+    for (int64_t i = 0; i < e->n; i++) {
+        const struct level *level = level_for(grid, e->radius[i]);
+        double cell[3];
+        cell_of(level, e->x + 3 * i, cell);
+        uint64_t h = hash(grid, level->exponent, cell);
+        grid->next[i] = grid->head[h];
+        grid->head[h] = i;
+    }
+    return grid;
+}
+
+void generate_grid_free(struct generate_grid *grid)
+{
+    if (!grid) return;
+    free(grid->level);
+    free(grid->head);
+    free(grid->next);
+    free(grid);
+}
+
+bool generate_grid_is_free(const struct generate_grid *grid, const double x[3], double radius)
+{
+    struct look look = {.i = -1, .radius = radius};
+    look_with_images(grid, &look, x);
+    return look.found.n == 0;
 }
 
 struct generate_overlaps generate_overlaps(const struct scene *scene, const struct elements_host *e)
 {
-    struct grid grid = {.scene = scene, .e = e, .mask = 1, .found = {0, 0, 0, {-1, -1}}};
-    double largest = 0;
-    put_levels(&grid);
-    while (grid.mask < (uint64_t)e->n) grid.mask *= 2;
-    grid.head = fail_alloc(grid.mask * sizeof *grid.head);
-    grid.next = fail_alloc((size_t)e->n * sizeof *grid.next);
-    for (uint64_t h = 0; h < grid.mask; h++) grid.head[h] = -1;
-    grid.mask--;
-    for (int64_t i = 0; i < e->n; i++) {
-        int level = level_of(e->radius[i]);
-        double cell[3];
-        for (int a = 0; a < 3; a++) cell[a] = floor(e->x[3 * i + a] / ldexp(2, level));
-        uint64_t h = hash(&grid, level, cell);
-        grid.next[i] = grid.head[h];
-        grid.head[h] = i;
-        largest = fmax(largest, e->radius[i]);
+    struct generate_grid *grid = generate_grid_create(scene, e);
+    struct look look = {.found = {0, 0, 0, {-1, -1}}};
+    for (look.i = 0; look.i < e->n; look.i++) {
+        look.radius = e->radius[look.i];
+        look_with_images(grid, &look, e->x + 3 * look.i);
     }
-    for (int64_t i = 0; i < e->n; i++) look_with_images(&grid, i, largest);
-    free(grid.level);
-    free(grid.head);
-    free(grid.next);
-    return grid.found;
+    generate_grid_free(grid);
+    return look.found;
 }

@@ -14,11 +14,20 @@ struct generate_list {
 int64_t generate_add(struct generate_list *list, const struct scene *scene, int group,
     const double x[3], double radius);
 
+/* Elements by place and size, to be asked whether a sphere overlaps none of them, periodic images
+ * included. Scene and elements must outlive it. */
+struct generate_grid;
+struct generate_grid *generate_grid_create(
+    const struct scene *scene, const struct elements_host *elements);
+void generate_grid_free(struct generate_grid *grid); /* NULL is fine */
+bool generate_grid_is_free(const struct generate_grid *grid, const double x[3], double radius);
+
 void generate_fill(
     struct generate_list *list, const struct scene *scene, int group, struct scene_errors *errors);
 void generate_read_csv(
     struct generate_list *list, const struct scene *scene, int group, struct scene_errors *errors);
+/* Sets elements->overlaps, too. */
 void generate_check(
-    const struct scene *scene, const struct elements_host *elements, struct scene_errors *errors);
+    const struct scene *scene, struct elements_host *elements, struct scene_errors *errors);
 
 #endif

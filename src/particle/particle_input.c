@@ -105,7 +105,7 @@ void particle_plan(struct sim *s)
 static void warn_of_overlaps(struct sim *s)
 {
     if (s->from || s->comm->rank != 0) return;
-    struct generate_overlaps all = generate_overlaps(s->scene, s->particle->first);
+    struct generate_overlaps all = s->particle->first->overlaps;
     if (all.share > GENERATE_DEEP)
         log_warn(s->log,
             "%lld pairs overlap at the start, elements %lld and %lld by %.3g m, %.3g of the "

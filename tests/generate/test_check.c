@@ -10,12 +10,13 @@ static struct elements_host *generate_from(
     char *path = scratch_file(csv, strlen(csv));
     struct element_group group = {.name = "grains", .from_file = true, .file = path, .line = 4};
     struct scene scene = {.path = "scene.yaml", .group = &group, .n_group = 1, .domain = domain};
+    if (!(domain.start_overlap > 0)) scene.domain.start_overlap = HUGE_VAL;
     struct elements_host *e = generate_elements(&scene, errors);
     scratch_remove(path);
     return e;
 }
 
-/* The threshold is 1e-3 of the smaller radius; elements that merely overlap are the user's wish. */
+/* The threshold is 1e-3 of the smaller radius; other overlaps are accepted up to a share. */
 static void test_coincident(void **unused)
 {
     (void)unused;
@@ -211,12 +212,75 @@ static void test_in_a_moved_wall(void **unused)
     scratch_remove(wall.stl);
 }
 
+/* All pairs of 300 elements with radii from 1 to 100, in a periodic box: as many, and the same
+ * deepest one, as by brute force. */
+static void test_overlaps(void **unused)
+{
+    (void)unused;
+    enum { N = 300 };
+    double x[3 * N], radius[N];
+    struct elements_host e = {.n = N, .x = x, .radius = radius};
+    for (int k = 0; k < 4; k++) {
+        struct scene scene = {.domain = {.has_box = true, .periodic = {k & 1, k & 2, true}}};
+        uint64_t state = 7 + (uint64_t)k;
+        for (int a = 0; a < 3; a++) scene.domain.max[a] = 500 + 50 * a;
+        for (int i = 0; i < N; i++) {
+            radius[i] = pow(100, scratch_random(&state, 0, 1));
+            for (int a = 0; a < 3; a++)
+                x[3 * i + a] = scratch_random(&state, 0, scene.domain.max[a]);
+        }
+        struct generate_overlaps expected = {0, 0, 0, {-1, -1}},
+                                 found = generate_overlaps(&scene, &e);
+        for (int i = 0; i < N; i++)
+            for (int j = 0; j < i; j++) {
+                double d2 = 0;
+                for (int a = 0; a < 3; a++) {
+                    double d = fabs(x[3 * i + a] - x[3 * j + a]);
+                    if (scene.domain.periodic[a]) d = fmin(d, scene.domain.max[a] - d);
+                    d2 += d * d;
+                }
+                double depth = radius[i] + radius[j] - sqrt(d2),
+                       share = depth / fmin(radius[i], radius[j]);
+                if (!(depth > 0)) continue;
+                expected.n++;
+                if (!(share > expected.share)) continue;
+                expected = (struct generate_overlaps){expected.n, share, depth, {j, i}};
+            }
+        assert_true(expected.n > 100);
+        assert_int_equal(found.n, expected.n);
+        assert_true(
+            found.element[0] == expected.element[0] && found.element[1] == expected.element[1]);
+        assert_true(
+            fabs(found.depth - expected.depth) < 1e-9 && fabs(found.share - expected.share) < 1e-9);
+    }
+}
+
+static void test_overlaps_refused(void **unused)
+{
+    (void)unused;
+    struct domain domain = {.start_overlap = 0.25};
+    struct scene_errors errors = {0};
+    const char *csv = "x,y,z,radius\n0,0,0,1\n1.76,0,0,1\n9,0,0,0.1\n9,1.06,0,1\n";
+    assert_null(generate_from(csv, domain, &errors));
+    assert_int_equal(errors.n, 1);
+    scratch_expect(&errors, 0,
+        "scene.yaml:4: element 2 of group 'grains' and element 3 of group 'grains' at (9, 1.06, 0) "
+        "overlap by 0.04 m, 0.4 of the smaller radius, one of 2 pairs that overlap at the start; "
+        "domain.start_overlap, the most that is accepted, is 0.25");
+    scene_errors_free(&errors);
+    domain.start_overlap = 0.41;
+    struct elements_host *e = generate_from(csv, domain, &errors);
+    assert_non_null(e);
+    generate_free(e);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_coincident),
         cmocka_unit_test(test_coincident_at_random), cmocka_unit_test(test_coincident_across_faces),
         cmocka_unit_test(test_short_period), cmocka_unit_test(test_all_in_one_place),
         cmocka_unit_test(test_outside_the_domain), cmocka_unit_test(test_in_walls),
-        cmocka_unit_test(test_in_a_moved_wall)};
+        cmocka_unit_test(test_in_a_moved_wall), cmocka_unit_test(test_overlaps),
+        cmocka_unit_test(test_overlaps_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

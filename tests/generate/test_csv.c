@@ -13,7 +13,8 @@ static struct elements_host *read_bytes(
         .line = 4,
         .velocity = {1, 2, 3},
         .angular_velocity = {4, 5, 6}};
-    struct scene scene = {.path = "scene.yaml", .group = &group, .n_group = 1};
+    struct scene scene = {
+        .path = "scene.yaml", .group = &group, .n_group = 1, .domain = {.start_overlap = HUGE_VAL}};
     return generate_elements(&scene, errors);
 }
 

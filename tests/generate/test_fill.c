@@ -217,6 +217,39 @@ static void test_v_funnel(void **unused)
     generate_free(e);
 }
 
+/* A second group of other sizes in the same region, across its periodic faces too, finds its places
+ * beside the first, the lowest that are left; it says so where they are not enough. */
+static void test_two_groups(void **unused)
+{
+    (void)unused;
+    struct element_group group[2] = {fill_group(REGION_BOX), fill_group(REGION_BOX)};
+    group[0].count = 400;
+    group[1].diameter[0] = 0.05;
+    group[1].diameter[1] = 0.15;
+    group[1].count = 50;
+    group[1].seed = 2;
+    struct scene scene = fill_scene(group);
+    struct scene_errors errors = {0};
+    scene.n_group = 2;
+    scene.domain = (struct domain){.has_box = true, .periodic = {true, true}, .max = {1.2, 1.2, 9}};
+    struct elements_host *e = generate_elements(&scene, &errors);
+    assert_int_equal(errors.n, 0);
+    assert_int_equal(e->n, 450);
+    assert_int_equal(generate_overlaps(&scene, e).n, 0);
+    assert_true(smallest_gap(e) > 0);
+    double highest = 0;
+    for (int64_t i = 0; i < 400; i++) highest = fmax(highest, e->x[3 * i + 2]);
+    for (int64_t i = 400; i < 450; i++)
+        assert_true(e->x[3 * i + 2] > highest - 0.3 && e->x[3 * i + 2] < highest + 0.5);
+    generate_free(e);
+    group[1].count = 400;
+    assert_null(generate_elements(&scene, &errors));
+    assert_int_equal(errors.n, 1);
+    assert_non_null(strstr(errors.text[0], "400 elements were asked for, "));
+    assert_non_null(strstr(errors.text[0], " fit into the region beside those of the groups"));
+    scene_errors_free(&errors);
+}
+
 static void refuse(struct element_group *group, const char *text)
 {
     struct scene scene = fill_scene(group);
@@ -259,6 +292,7 @@ int main(void)
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_box),
         cmocka_unit_test(test_random_numbers), cmocka_unit_test(test_count_takes_the_lowest),
         cmocka_unit_test(test_gravity), cmocka_unit_test(test_cylinder), cmocka_unit_test(test_stl),
-        cmocka_unit_test(test_v_funnel), cmocka_unit_test(test_refused)};
+        cmocka_unit_test(test_v_funnel), cmocka_unit_test(test_two_groups),
+        cmocka_unit_test(test_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
