@@ -228,6 +228,22 @@ class Crafted(Case):
             )
         )
 
+    def odd(self, n):
+        """Numbers may be what they like where nothing hangs on them: the run goes on, or ends."""
+        for k in range(n):
+            data = self.crafted({"odd": frame_craft.odd(self.random)})
+            run = self.resume(self.folder(data)[0])
+            self.assertIn(run.returncode, (0, 3, 4, 5, 6), f"{k}: {run.stderr}")
+            self.done["taken" if run.returncode == 0 else "stopped"] += 1
+
+    def test_odd_particles(self):
+        self.particles()
+        self.odd(100)
+
+    def test_odd_lattice(self):
+        self.lattice()
+        self.odd(100)
+
     def test_all_particles(self):
         self.particles()
         self.contents(frame_craft.PARTICLES, (1, 3))
