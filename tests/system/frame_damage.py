@@ -70,7 +70,14 @@ class Case(robust_jobs.Case):
 
     def is_told(self, run, what):
         """Neither a crash nor silence."""
-        for word in ("Sanitizer", "Signal", "signal: ", "Assertion", "rank 0 on node"):
+        for word in (
+            "Sanitizer",
+            "runtime error",
+            "Signal",
+            "signal: ",
+            "Assertion",
+            "rank 0 on node",
+        ):
             self.assertNotIn(word, run.stderr.replace("(signal", ""), what)
         self.assertIn(run.returncode, (0, 6), f"{what}: {run.stderr}")
         if run.returncode == 6:
