@@ -157,8 +157,8 @@ static void raise_weights(struct leaves *l, const int *part, const int *name, co
     }
     for (int v = 0; v < l->graph.n; v++) {
         int r = name[part[v]];
-        double ratio = (double)work[r] / (double)l->share[r] * shares / all;
-        int64_t raised = llround((double)l->weight[v] * ratio);
+        double ratio = all > 0 ? (double)work[r] / (double)l->share[r] * shares / all : 1;
+        int64_t raised = llround(fmin((double)l->weight[v] * ratio, 0x1p62));
         l->weight[v] = raised > 1 ? raised : 1;
     }
 }

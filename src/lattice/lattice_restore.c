@@ -6,6 +6,7 @@
 
 #include "lattice_fields.h"
 #include "kernels/lattice/lattice_words.h"
+#include "base/whole.h"
 #include "comm/fail.h"
 #include "results/h5_check.h"
 #include "run/resume.h"
@@ -200,7 +201,7 @@ void lattice_restore_run(struct sim *s)
     s->lattice->energy_start = t.start;
     lattice_energy_reopen(s->lattice->account, t.opened);
     if (s->lattice->relax) lattice_relax_recall(s->lattice->relax, t.relax);
-    s->rest.next = (int64_t)t.rest_next;
+    s->rest.next = whole_i64(t.rest_next);
     s->rest.left = t.rest_left;
     s->rest.damping = t.rest_damping;
     double asked = s->scene->lattice.tolerance, before = s->from->before->lattice.tolerance;

@@ -8,6 +8,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { MOST_NAMED = 3 };
 /* of the smaller radius: no contact law knows a normal there */
@@ -53,11 +54,16 @@ struct grid {
     int64_t *head, *next;
 };
 
+/* Of the bits of a cell's numbers, which may be too large for integers: a millimetre in cells of
+ * 1e-300 m. */
 static uint64_t cell_hash(const struct grid *grid, const double cell[3])
 {
     uint64_t h = 0;
     for (int a = 0; a < 3; a++) {
-        h = (h ^ (uint64_t)(int64_t)cell[a]) * 0x9e3779b97f4a7c15u;
+        double number = cell[a] + 0.0; /* -0 is 0 */
+        uint64_t bits;
+        memcpy(&bits, &number, sizeof bits);
+        h = (h ^ bits) * 0x9e3779b97f4a7c15u;
         h ^= h >> 29;
     }
     return h & grid->mask;

@@ -17,6 +17,7 @@
 #include <string.h>
 
 #include "partition/graph.h"
+#include "base/whole.h"
 #include "comm/fail.h"
 
 /* Cuts with raised weights, and how finely weights are kept meanwhile. */
@@ -164,7 +165,7 @@ static struct rcb *cut_points(struct sim *s, const struct view *v)
         }
         for (int64_t i = 0; i < p.n; i++) {
             int r = rcb_owner(tree, p.x[i]);
-            p.weight[i] = llround(fmax(
+            p.weight[i] = whole_round(fmax(
                 (double)p.weight[i] * (double)work[r] / (double)s->balance->share[r] * shares / all,
                 1));
         }

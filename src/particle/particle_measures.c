@@ -66,7 +66,7 @@ static int64_t sum_at_wall(
 {
     struct particle_run *run = s->particle;
     const struct wall_contacts *w = run->wall_contacts;
-    int64_t sum[7] = {0};
+    int64_t sum[8] = {0}; /* the last: how many are too large to add, or no numbers */
     size_t n = w ? (size_t)w->now.n : 0,
            width = WALL_RESULT_WIDTH(w && w->layout.result > WALL_RESULT_WIDTH(false));
     cl_int *candidate = fail_alloc(n * sizeof *candidate),
@@ -81,15 +81,20 @@ static int64_t sum_at_wall(
         if (w->walls->wall_of[candidate[k]] != what->wall) continue;
         act_on_wall(f, width > 4, host ? host->x + 3 * element[k] : NULL, what->about, part);
         for (int a = 0; a < 3; a++) {
+            if (!(fabs(part[a]) < 0x1p40)) {
+                sum[7]++;
+                continue;
+            }
             double high = floor(part[a] * 0x1p20);
             sum[2 * a] += (int64_t)high;
             sum[2 * a + 1] += (int64_t)((part[a] * 0x1p20 - high) * 0x1p40);
         }
         sum[6] += fabs(f[0]) > 0 || fabs(f[1]) > 0 || fabs(f[2]) > 0;
     }
-    comm_sum_i64(s->comm, sum, 7);
+    comm_sum_i64(s->comm, sum, 8);
     for (int a = 0; a < 3; a++)
-        total[a] = (double)sum[2 * a] * 0x1p-20 + (double)sum[2 * a + 1] * 0x1p-60;
+        total[a] =
+            sum[7] ? (double)NAN : (double)sum[2 * a] * 0x1p-20 + (double)sum[2 * a + 1] * 0x1p-60;
     free(candidate);
     free(element);
     free(result);

@@ -37,7 +37,7 @@ static void read_attribute(
 {
     if (!h5_check_number(reader->file, "democles", name, memory, value))
         fail_stop_together(EXIT_IO,
-            "cannot read '%s': its attribute %s is not one number, or not there", reader->path,
+            "'%s' cannot be used: its attribute %s is not one number, or not there", reader->path,
             name);
 }
 
@@ -63,7 +63,7 @@ char *h5_read_text(const struct h5_reader *reader, const char *name)
     hid_t type = H5Dget_type(dataset), space = H5Dget_space(dataset);
     if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) ||
         H5Sget_simple_extent_npoints(space) != 1)
-        fail_stop_together(EXIT_IO, "cannot read '%s': %s is not one text", reader->path, name);
+        fail_stop_together(EXIT_IO, "'%s' cannot be used: %s is not one text", reader->path, name);
     char *text = fail_alloc(H5Tget_size(type) + 1);
     if (H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text) < 0) give_up(reader, "", name);
     H5Sclose(space);
@@ -115,7 +115,7 @@ void h5_read_rows(const struct h5_reader *reader, const char *table, const char 
     hsize_t shape[2], start[2] = {(hsize_t)begin, 0}, count[2] = {(hsize_t)n, (hsize_t)width};
     hid_t dataset = open_column(reader, table, column, shape);
     if (shape[1] != (hsize_t)width || begin + n > (int64_t)shape[0])
-        fail_stop_together(EXIT_IO, "cannot read '%s': %s/%s has %lld rows of %lld numbers",
+        fail_stop_together(EXIT_IO, "'%s' cannot be used: %s/%s has %lld rows of %lld numbers",
             reader->path, table, column, (long long)shape[0], (long long)shape[1]);
     hid_t space = H5Dget_space(dataset),
           here = H5Screate_simple(H5Sget_simple_extent_ndims(space), count, NULL);

@@ -1,6 +1,7 @@
 /* Corners of triangles (stl_file.h) become a welded mesh. */
 #include "stl.h"
 
+#include "base/whole.h"
 #include "comm/fail.h"
 #include "stl_file.h"
 
@@ -28,8 +29,8 @@ static int weld_vertex(struct weld *weld, struct stl *stl, const double x[3])
 {
     int64_t from[3], to[3];
     for (int a = 0; a < 3; a++) {
-        from[a] = (int64_t)floor((x[a] - weld->near) / (4 * weld->near));
-        to[a] = (int64_t)floor((x[a] + weld->near) / (4 * weld->near));
+        from[a] = whole_floor((x[a] - weld->near) / (4 * weld->near));
+        to[a] = whole_floor((x[a] + weld->near) / (4 * weld->near));
     }
     for (int64_t i = from[0]; i <= to[0]; i++)
         for (int64_t j = from[1]; j <= to[1]; j++)
@@ -44,7 +45,7 @@ static int weld_vertex(struct weld *weld, struct stl *stl, const double x[3])
     int64_t cell[3];
     for (int a = 0; a < 3; a++) {
         stl->vertex[3 * v + a] = x[a];
-        cell[a] = (int64_t)floor(x[a] / (4 * weld->near));
+        cell[a] = whole_floor(x[a] / (4 * weld->near));
     }
     size_t h = weld_hash(weld, cell[0], cell[1], cell[2]);
     weld->next[v] = weld->head[h];
@@ -140,6 +141,27 @@ static void number_edges(struct stl *stl)
     free(use);
 }
 
+/* Fourth powers of lengths stand in the areas of triangles and must be numbers. */
+static char *size_problem(const char *path, const struct stl_soup *soup, double scale)
+{
+    static const double largest = 1e75, smallest = 1e-75;
+    double far = 0, low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL},
+           high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, extent = 0;
+    for (size_t k = 0; k < 9 * soup->n; k++) {
+        far = fmax(far, fabs(soup->corner[k]));
+        low[k % 3] = fmin(low[k % 3], soup->corner[k]);
+        high[k % 3] = fmax(high[k % 3], soup->corner[k]);
+    }
+    for (int a = 0; a < 3; a++) extent = fmax(extent, high[a] - low[a]);
+    if (far > largest || far * scale > largest)
+        return fail_format("%s: corners at %g, and %g m with scale, are too far away: at most %g",
+            path, far, far * scale, largest);
+    if (extent > 0 && extent * scale < smallest)
+        return fail_format(
+            "%s: the surface is %g m wide with scale: at least %g", path, extent * scale, smallest);
+    return NULL;
+}
+
 struct stl *stl_read(const char *path, double scale, char **error)
 {
     struct stl_soup soup = {0};
@@ -147,6 +169,7 @@ struct stl *stl_read(const char *path, double scale, char **error)
     if (!*error && soup.n == 0) *error = fail_format("%s: no triangle", path);
     if (!*error && soup.n > INT32_MAX / 9)
         *error = fail_format("%s: %zu triangles are more than one surface can hold", path, soup.n);
+    if (!*error) *error = size_problem(path, &soup, scale);
     if (*error) {
         free(soup.corner);
         return NULL;

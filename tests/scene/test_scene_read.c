@@ -265,7 +265,7 @@ static void characters(void **state)
     enum { BATCH = 2048 };
     struct fixture *f = *state;
     char *escaped = fail_alloc(12 * BATCH + 1000), *raw = fail_alloc(4 * BATCH + 1000),
-         *title = fail_alloc(4 * BATCH + 1);
+         *title = fail_alloc(4 * BATCH + 2);
     for (unsigned first = 0; first < 0x110000; first += BATCH) {
         size_t e = (size_t)sprintf(escaped, "title: \"x"), r = (size_t)sprintf(raw, "title: 'x"),
                t = (size_t)sprintf(title, "x");

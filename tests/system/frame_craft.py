@@ -201,6 +201,35 @@ LATTICE = {
 }
 
 
+ODD = (0, -1, 1, 2**31 - 1, 2**31, 2**53, 2**63 - 1, -(2**63), 1e-300, 1e300, -1e300, 0.5)
+
+
+def odd(random):
+    """Some numbers of some column, or an attribute, that are odd; the sums are right."""
+
+    def number(values, dtype):
+        with numpy.errstate(all="ignore"):
+            return numpy.array(random.choice(values)).astype(dtype)
+
+    def change(file):
+        state, paths = file["democles"], []
+        state.visititems(lambda name, item: paths.append(name) if hasattr(item, "dtype") else None)
+        paths = [name for name in paths if name != "resolved" and len(state[name])]
+        if random.random() < 0.2:
+            name = random.choice(sorted(state.attrs))
+            state.attrs.modify(name, number(ODD, state.attrs[name].dtype))
+            return
+        dataset = state[random.choice(paths)]
+        values = dataset[()]
+        for _ in range(random.choice((1, 1, 3, 30))):
+            at = tuple(random.randrange(n) for n in values.shape)
+            values[at] = number((*ODD, *BAD_REALS), values.dtype)
+        dataset[...] = values
+        sign(dataset)
+
+    return change
+
+
 def craft(path, change):
     with h5py.File(path, "r+") as file:
         change(file)

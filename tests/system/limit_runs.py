@@ -45,6 +45,25 @@ class Directions(cli.Case):
             self.assertNotIn(free, digests)
 
 
+class Measured(cli.Case):
+    def test_force_that_is_too_large_to_add(self):
+        """1e17 N on a wall are beyond the integers that add forces in any order."""
+        scene = SCENE.replace("WALL", "surface: {plane: {point: [0, 0, 0], normal: [0, 0, 1]}}")
+        scene = scene.replace("{end: 2e-4, step: 1e-5}", "{end: 2e-13, step: 1e-13}")
+        scene += "measure: [{name: w, wall_force: f, every: 1e-13}]\n"
+        self.put("e.csv", "x,y,z,radius\n0,0,0.049,0.05\n")
+        for stiffness, force in (("1e9", -1e6), ("1e20", None)):
+            self.put("s.yaml", scene.replace("1e4", stiffness))
+            run = self.call("run", "s.yaml", "-o", "d" + stiffness, "--quiet")
+            self.assertEqual((run.code, run.err), (0, []))
+            with open(os.path.join(self.dir, "d" + stiffness, "w.csv")) as file:
+                row = file.read().splitlines()[1].split(",")
+            if force:
+                self.assertAlmostEqual(float(row[3]) / force, 1, 6)
+            else:
+                self.assertEqual(row[1:4], ["nan", "nan", "nan"])
+
+
 class Texts(cli.Case):
     def test_resume_reads_what_run_accepts(self):
         """Characters that YAML takes for line breaks, or only as escapes, and the longest name."""
@@ -137,6 +156,71 @@ class Bounded(cli.Case):
         lines = ["title: &a0 " + 100000 * "x"]
         lines += [f"t{k}: &a{k} [" + ", ".join(10 * [f"*a{k - 1}"]) + "]" for k in range(1, 6)]
         self.refused("\n".join(lines) + "\n", "too large: bulk data belong")
+
+
+class Extremes(cli.Case):
+    """Numbers at the ends of what a double holds, in every reader: a message or a right answer.
+    Under sanitizers, which see undefined conversions, as part of the short tests."""
+
+    def answered(self, scene, csv="0,0,1,0.1\n", *args, code=(0, 3)):
+        self.put("s.yaml", scene)
+        self.put("e.csv", "x,y,z,radius\n" + csv)
+        run = self.call("check", "s.yaml", *args)
+        self.assertIn(run.code, code, run.err)
+        for line in run.err:
+            self.assertNotIn("runtime error", line)
+            self.assertNotIn("Sanitizer", line)
+        return run
+
+    def test_elements(self):
+        scene = SCENE.replace("WALL", PLANE)
+        for csv in (
+            "1e308,-1e308,1e308,1e-300\n-1e308,1e308,1e308,1e-300\n",
+            "1e308,0,1,1e308\n-1e308,0,1,1e308\n",
+            "1e-320,1,1,1e-320\n1,0,1,1e-320\n",
+            "0,0,1e300,1e-300\n0,0,1e-300,1e-300\n",
+        ):
+            self.answered(scene, csv)
+
+    def test_surfaces(self):
+        corners = "vertex {0} 0 0\nvertex -{0} 0 0\nvertex 0 {0} 0\n"
+        for size, scale in (
+            ("1e308", "1"),
+            ("1", "1e308"),
+            ("1e-308", "1"),
+            ("1", "1e-308"),
+            ("1e-320", "1e300"),
+            ("1e70", "1"),
+        ):
+            loop = "facet normal 0 0 1\nouter loop\n" + corners.format(size) + "endloop\nendfacet\n"
+            self.put("m.stl", "solid m\n" + loop + "endsolid m\n")
+            wall = f"surface: {{stl: m.stl, scale: {scale}}}"
+            run = self.answered(SCENE.replace("WALL", wall))
+            self.assertEqual(run.code, 0 if size == "1e70" else 3)
+
+    def test_shapes(self):
+        for wall in (
+            "surface: {plane: {point: [1e308, -1e308, 1e308], normal: [1e308, 1e308, 1e308]}}",
+            "surface: {box: {min: [-1e308, -1e308, -1e308], max: [1e308, 1e308, 1e308]}}",
+            "surface: {cylinder: {from: [0, 0, -1e300], to: [0, 0, 1e300], radius: 1e300}}",
+            "surface: {rectangle: {center: [0, 0, 0], normal: [0, 0, 1], size: [1e308, 1e-308]}}",
+        ):
+            self.answered(SCENE.replace("WALL", wall))
+
+    def test_numbers(self):
+        for change in (
+            "time.end=1e308",
+            "time.step=1e-308",
+            "time={end: 1e-300, step: 1e-308}",
+            "gravity=[1e308, 1e308, 1e308]",
+            "materials.a.density=1e308",
+            "contacts[0].normal.stiffness=1e308",
+            "domain={box: {min: [-1e308, -1, -1], max: [1e308, 1, 1]}, periodic: [x]}",
+            "output={every: 1e-308, checkpoint_every: 1e308}",
+            "walls.f.motion={rotation: {center: [0, 0, 0], axis: [0, 0, 1], rate: 1e308}}",
+            "walls.f.motion={remove_at: 1e308}",
+        ):
+            self.answered(SCENE.replace("WALL", PLANE), "0,0,1,0.1\n", "--set", change)
 
 
 if __name__ == "__main__":

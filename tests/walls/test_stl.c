@@ -154,6 +154,34 @@ static void test_dialects(void **unused)
         "solid s\r" FACET("0 0 0", "1 0 0", "0 x 0") "endsolid", ":6: 'x' is not a finite number");
 }
 
+/* Numbers of any size: a message, never a surface that is not there. */
+static void test_sizes(void **unused)
+{
+    static const struct {
+        const char *far;
+        double scale;
+        const char *message;
+    } wrong[] = {{"1e308", 1, ": corners at 1e+308, and 1e+308 m with scale"},
+        {"1", 1e308, ": corners at 1, and 1e+308 m with scale"},
+        {"1e160", 1e-150, ": corners at 1e+160, and 1e+10 m with scale"},
+        {"1", 1e-200, ": the surface is 2e-200 m wide with scale"}};
+    (void)unused;
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
+        char *text = malloc(500), *error = NULL;
+        sprintf(text,
+            "solid s\nfacet normal 0 0 1\nouter loop\nvertex -%s 0 0\nvertex %s 0 0\n"
+            "vertex 0 1 0\nendloop\nendfacet\nendsolid\n",
+            wrong[k].far, wrong[k].far);
+        char *path = scratch_file(text, strlen(text));
+        assert_null(stl_read(path, wrong[k].scale, &error));
+        assert_memory_equal(error, path, strlen(path));
+        assert_memory_equal(error + strlen(path), wrong[k].message, strlen(wrong[k].message));
+        free(text);
+        free(error);
+        scratch_remove(path);
+    }
+}
+
 static void test_unreadable(void **unused)
 {
     (void)unused;
@@ -281,8 +309,9 @@ static void test_overlapping_and_turned(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_refused),
-        cmocka_unit_test(test_dialects), cmocka_unit_test(test_unreadable),
-        cmocka_unit_test(test_cube), cmocka_unit_test(test_weld_and_drop),
-        cmocka_unit_test(test_inside_of_a_cube), cmocka_unit_test(test_overlapping_and_turned)};
+        cmocka_unit_test(test_dialects), cmocka_unit_test(test_sizes),
+        cmocka_unit_test(test_unreadable), cmocka_unit_test(test_cube),
+        cmocka_unit_test(test_weld_and_drop), cmocka_unit_test(test_inside_of_a_cube),
+        cmocka_unit_test(test_overlapping_and_turned)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
