@@ -1,5 +1,6 @@
 """The program as a user calls it: what the tests of the command line share."""
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -10,12 +11,14 @@ DEMOCLES, MPIRUN = None, None
 
 
 def own_lines(err):
-    """What is not a notice of mpirun, which stands between lines of dashes."""
+    """What is neither a notice of mpirun, which stands between lines of dashes, nor its log, nor
+    about another test that compiles the same kernels."""
+    foreign = re.compile(r"\[\S+:\d+\] .*ORTE_ERROR_LOG|democles: warning: waits for process \d+")
     lines, notice = [], False
     for line in err.splitlines():
         if line == 74 * "-":
             notice = not notice
-        elif line and not notice:
+        elif line and not notice and not foreign.match(line):
             lines.append(line)
     return lines
 

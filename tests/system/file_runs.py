@@ -164,25 +164,25 @@ class Owned(Files):
     def test_links(self):
         """A link out of the folder is refused where it is in the way, and followed nowhere."""
         pid_names = ["frame_000000.hdf.tmp", "scene.yaml.tmp", "run.json.tmp"]
-        for ranks in (1, 2):
-            for name in ["log.txt", "m.csv", "run.balance.csv", "stop", *pid_names]:
-                folder = f"{name}.{ranks}"
-                os.mkdir(os.path.join(self.dir, folder))
-                self.put("victim", "VICTIM\n")
-                os.symlink("../victim", os.path.join(self.dir, folder, name))
-                args = ["--profile"] if name == "run.balance.csv" else []
-                if name not in pid_names:
-                    self.refused("a file " + name, *args, folder=folder)
-                    args.append("--force")
-                self.good("run", "s.yaml", "-o", folder, *args, ranks=ranks)
-                self.assertEqual(self.text("victim"), "VICTIM\n")
-                self.assertFalse(
-                    any(
-                        os.path.islink(os.path.join(self.dir, folder, n))
-                        for n in self.names(folder)
-                        if n not in pid_names
-                    )
+        for name in ["log.txt", "m.csv", "run.balance.csv", "stop", *pid_names]:
+            ranks = 2 if name in ("run.balance.csv", pid_names[0]) else 1
+            folder = f"{name}.{ranks}"
+            os.mkdir(os.path.join(self.dir, folder))
+            self.put("victim", "VICTIM\n")
+            os.symlink("../victim", os.path.join(self.dir, folder, name))
+            args = ["--profile"] if name == "run.balance.csv" else []
+            if name not in pid_names:
+                self.refused("a file " + name, *args, folder=folder)
+                args.append("--force")
+            self.good("run", "s.yaml", "-o", folder, *args, ranks=ranks)
+            self.assertEqual(self.text("victim"), "VICTIM\n")
+            self.assertFalse(
+                any(
+                    os.path.islink(os.path.join(self.dir, folder, n))
+                    for n in self.names(folder)
+                    if n not in pid_names
                 )
+            )
 
     def test_links_in_a_folder_that_is_resumed(self):
         for name in ("log.txt", "m.csv"):

@@ -39,10 +39,12 @@ class Stopped(resume_runs.Case):
             while not os.path.exists(path) and time.monotonic() < end:
                 time.sleep(0.001)
         time.sleep(delay or 0)
-        try:
-            job.signal(number, random.randrange(ranks))
-        except (AssertionError, ProcessLookupError):  # ranks that are not there yet, or have gone
-            job.process.kill() if not place and job.process.poll() is None else None
+        while job.process.poll() is None:
+            try:
+                job.signal(number, random.randrange(ranks))
+                break
+            except (AssertionError, ProcessLookupError):  # ranks that are not there yet
+                time.sleep(0.01)
         code = job.end()
         if not os.path.exists(job.dir):
             self.counts["not begun"] += 1
