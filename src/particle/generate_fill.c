@@ -2,7 +2,8 @@
  *
  * Spacing s = (1 + jitter) d_max, displacement at most jitter d_max/2 per axis: a sphere never
  * leaves its cube of edge s, so spheres never overlap, whatever the random numbers are. Sites that
- * overlap an element of a group before are left out. Costs one test per site; with gravity along an axis, only up to the layer where `count` is reached. */
+ * overlap an element of a group before are left out. Costs one test per site; with gravity along
+ * an axis, only up to where `count` is reached. */
 #include "base/vector.h"
 #include "base/whole.h"
 #include "comm/fail.h"
