@@ -15,7 +15,9 @@ def ensure():
         return "no display; install xvfb (scripts/setup does)"
     number, told = os.pipe()
     server = subprocess.Popen(
-        ["Xvfb", "-displayfd", str(told), "-screen", "0", "1280x1024x24", "-nolisten", "tcp"],
+        # without -noreset it starts afresh when a window closes, and refuses the next meanwhile
+        ["Xvfb", "-displayfd", str(told), "-noreset", "-nolisten", "tcp"]
+        + ["-screen", "0", "1280x1024x24"],
         pass_fds=(told,),
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,
