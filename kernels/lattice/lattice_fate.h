@@ -29,6 +29,13 @@ LAW int lattice_fate(int axis, struct link_cell lower, struct link_cell upper,
            << (3 * axis);
 }
 
+/* The same of a link that is due by the word of either cell (link_principal.cl). */
+LAW int lattice_due(int lower, int upper, int axis)
+{
+    int due = (WORD_DUE(lower) >> (2 * axis + 1) | WORD_DUE(upper) >> (2 * axis)) & 1;
+    return lower >> (2 * axis + 1) & due ? BREAK_TENSION << (3 * axis) : 0;
+}
+
 /* Bits of links that are gone: on upper faces by the cell's own fate, on lower faces by those of
  * the cells there. */
 LAW int lattice_gone(int own, int x, int y, int z)

@@ -1,7 +1,8 @@
 /* Ghosts of the lattice: gathers the planes of the cells that others need into records, and spreads
  * records that have arrived. Words, not numbers, so that one text serves any precision and records
  * need no padding: X_NUMBERS places and rotations, then velocities where links are damped, and with
- * WITH_BREAK the cell's own word: a ghost has lost the links that its owner's cell has lost. */
+ * WITH_BREAK the cell's own word: a ghost has lost the links that its owner's cell has lost, and
+ * those are due that are due there. */
 #include "lattice_words.h"
 #include "common/types.h"
 
@@ -51,7 +52,8 @@ __kernel void lattice_unpack(int n, __global const int *index, long plane, __glo
     FOR_WORDS(X, k, b) x[WORD(X, x_in, k, b, i)] = from[k * X_WORDS + b];
     FOR_WORDS(V, k, b) v[WORD(V, v_in, k, b, i)] = from[X_NUMBERS * X_WORDS + k * V_WORDS + b];
 #if WITH_BREAK
-    word[i] &= from[RECORD - 1] | ~63;
+    int links = 63, due = 63 << WORD_DUE_AT, sent = from[RECORD - 1];
+    word[i] = (word[i] & ~due & (sent | ~links)) | (sent & due);
 #endif
     (void)v;
 }

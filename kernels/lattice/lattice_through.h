@@ -11,7 +11,7 @@
 #define DEMOCLES_LATTICE_THROUGH_H
 
 #include "lattice_state.h"
-#include "law_stress.h"
+#include "law_principal.h"
 
 /* Forces on the cell through its links, by the mask's order; 0 where there is none [N]. */
 struct lattice_through {
@@ -55,6 +55,25 @@ LAW struct stress lattice_stress_of(struct lattice_through f, struct link_cell c
     r.y = stress_row(f.y[1], f.y[0], 1, faces, extrapolate, per_area);
     r.z = stress_row(f.z[1], f.z[0], 2, faces, extrapolate, per_area);
     return stress_parts(WITH_TURN ? stress_in_cell(r, c.q) : r, faces);
+}
+
+/* The link of a cell that its stress breaks, as a mask; 0 where none is pulled (law_principal.h).
+ * s: as lattice_stress_of gives it. */
+LAW int lattice_principal(struct lattice_through f, struct stress s, struct link_cell c, int links)
+{
+    vec3 d = principal_direction(s),
+         world = WITH_TURN ? v3_of_p3(quat_rotate(c.q, p3_of_v3(d))) : d;
+    const real pull[6] = {principal_pull(f.x[0], world, -d.x), principal_pull(f.x[1], world, d.x),
+        principal_pull(f.y[0], world, -d.y), principal_pull(f.y[1], world, d.y),
+        principal_pull(f.z[0], world, -d.z), principal_pull(f.z[1], world, d.z)};
+    real most = 0;
+    int link = 0;
+    for (int face = 0; face < 6; face++)
+        if (links >> face & 1 && pull[face] > most) {
+            most = pull[face];
+            link = 1 << face;
+        }
+    return link;
 }
 
 /* Symmetric part in the world's axes. */

@@ -1,18 +1,22 @@
 /* Numbers that host and kernels of the lattice agree on.
  *
  * Word of a cell: bits 0-5 its links (-x, +x, -y, +y, -z, +z), 6-11 its fixed DOF (x, y, z, and
- * rotation about them), 12 whether this rank owns it, 16-23 its kind. Planes of x: u(3), then q (w,
- * x, y, z) or theta(3); of v: v(3), w(3). */
+ * rotation about them), 12 whether this rank owns it, 16-23 its kind, 24-29 its links that are due
+ * (link_principal.cl). Planes of x: u(3), then q (w, x, y, z) or theta(3); of v: v(3), w(3). */
 #ifndef DEMOCLES_LATTICE_WORDS_H
 #define DEMOCLES_LATTICE_WORDS_H
 
 #define WORD_FIX 6
 #define WORD_OWNED 12
 #define WORD_KIND 16
+#define WORD_DUE_AT 24
+#define WORD_DUE(word) ((word) >> WORD_DUE_AT & 63)
 
 /* Fate of a cell: three bits for each upper face (x, y, z), the mode of law_break.h in which that
- * link broke; the lower cell of a link has it. */
+ * link broke; the lower cell of a link has it. Written to files with the links that are due in the
+ * bits above. */
 #define FATE_MODE(fate, axis) ((fate) >> (3 * (axis)) & 7)
+#define FATE_DUE_AT 9
 
 #define LATTICE_X(with_turn) ((with_turn) ? 7 : 6)
 #define LATTICE_V 6
@@ -27,6 +31,7 @@
 /* one over the limits of normal and shear force, bending and twisting moment, criterion
  * (law_break.h); row: as links */
 #define BREAK_WIDTH 5
+#define BREAK_CRITERION 4
 /* the kick that ends a step, the one that begins the next, KICK_PART each; row: kind */
 #define KICK_WIDTH 12
 #define KICK_PART 6 /* f g, and s G A C that WITH_ENERGY alone reads (lattice_work.h) */

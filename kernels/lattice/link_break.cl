@@ -68,9 +68,12 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void link_brea
     }
 }
 
-/* Own cells of the runs of `list` lose the links that are broken. */
+/* Own cells of the runs of `list` lose the links that are broken, and learn which are due. */
 __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void link_sever(int n,
     __global const int *list, __global const int *base, int n_run, __global int *restrict word,
+#if WITH_PRINCIPAL
+    __global const int *due,
+#endif
     __global const int *fate)
 {
     if (get_group_id(0) >= (size_t)n) return;
@@ -82,6 +85,10 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void link_seve
         int word_i = word[i];
         int gone = lattice_gone(fate[i], fate[lattice_beside(s, 0, l)],
             fate[lattice_beside(s, 2, l)], fate[lattice_beside(s, 4, l)]);
-        word[i] = word_i & ~(word_i >> WORD_OWNED & 1 ? gone : 0);
+        int left = word_i & ~(word_i >> WORD_OWNED & 1 ? gone : 0);
+#if WITH_PRINCIPAL
+        if (word_i >> WORD_OWNED & 1) left = (left & ~(63 << WORD_DUE_AT)) | due[i] << WORD_DUE_AT;
+#endif
+        word[i] = left;
     }
 }

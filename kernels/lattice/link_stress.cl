@@ -2,21 +2,7 @@
  * once more (lattice_through.h). Runs as link_force.cl.
  *
  * lint: WITH_SHEAR_APART requires WITH_VOLUME */
-#include "lattice_through.h"
-#include "lattice_view.h"
-
-LAW struct lattice_through lattice_through_of(
-    int mixed, struct lattice_view s, size_t l, int word, struct link_cell me)
-{
-    struct lattice_through f;
-    f.x[0] = lattice_face(0, mixed, s, l, word, me).force;
-    f.x[1] = lattice_face(1, mixed, s, l, word, me).force;
-    f.y[0] = lattice_face(2, mixed, s, l, word, me).force;
-    f.y[1] = lattice_face(3, mixed, s, l, word, me).force;
-    f.z[0] = lattice_face(4, mixed, s, l, word, me).force;
-    f.z[1] = lattice_face(5, mixed, s, l, word, me).force;
-    return f;
-}
+#include "link_through.h"
 
 LAW void lattice_stress_keep(
     __global real *stress, size_t plane, size_t i, struct stress s, real von_mises)
@@ -30,20 +16,6 @@ LAW void lattice_stress_keep(
     stress[6 * plane + i] = von_mises;
 }
 
-#if WITH_LOADS
-LAW struct lattice_load lattice_load_at(__global const real *at)
-{
-    struct lattice_load load;
-    load = lattice_load_of(at);
-    return load;
-}
-#define LOAD_OF(i) lattice_load_at(rows + at_rows + (size_t)row[i] * LOAD_WIDTH)
-#else
-#define LOAD_OF(i)                                                                                 \
-    {                                                                                              \
-        .traction = 0                                                                              \
-    }
-#endif
 #define RUN(mixed)                                                                                 \
     BATCH_VECTOR                                                                                   \
     FOR_BATCH (l, BATCH) {                                                                         \

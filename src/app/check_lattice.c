@@ -30,6 +30,8 @@ static void print_material(const struct material *m)
     else if (m->has_strength && isfinite(m->tension))
         printf(", tensile strength %.4g Pa", m->tension);
     if (m->has_strength && isfinite(m->shear)) printf(", shear strength %.4g Pa", m->shear);
+    if (m->has_strength && m->criterion == CRITERION_PRINCIPAL)
+        printf(", by the largest principal stress of a cell");
     printf("\n");
 }
 

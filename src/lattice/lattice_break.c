@@ -10,8 +10,11 @@
 struct lattice_break {
     struct lattice *l;
     struct program *program;
-    struct launch *judge, *sever;
+    struct launch *judge, *sever; /* judge: NULL where no link has a limit of its own */
     struct buffer limit, fate;
+    struct program *program_principal; /* NULL: no cell has a limit */
+    struct launch *follow, *principal;
+    struct buffer inverse, due;
     struct program *program_release; /* NULL: released energy is not asked for */
     struct launch *release;
     struct buffer fresh, released;
@@ -20,6 +23,8 @@ struct lattice_break {
 static const struct buffer_spec buffers[] = {
     {"lattice strengths", offsetof(struct lattice_break, limit)},
     {"lattice fates", offsetof(struct lattice_break, fate)},
+    {"lattice limits of cells", offsetof(struct lattice_break, inverse)},
+    {"lattice links due", offsetof(struct lattice_break, due)},
     {"lattice fresh breaks", offsetof(struct lattice_break, fresh)},
     {"lattice released", offsetof(struct lattice_break, released)}, {0}};
 
@@ -59,28 +64,64 @@ void lattice_break_bind(const struct lattice_break *b, struct launch *launch)
     launch_set_real(launch, "after", 1 - share_before(b->l));
 }
 
+/* Links judged one by one, if any of them has a limit. */
+static void create_judge(struct lattice_break *b, const struct lattice_cells *cells)
+{
+    struct lattice *l = b->l;
+    int64_t n = (int64_t)l->n_kind * l->n_kind * BREAK_WIDTH;
+    double *limit = lattice_features_limits(cells, &l->options);
+    bool any = false;
+    for (int64_t k = 0; k < n; k++) any |= k % BREAK_WIDTH < BREAK_CRITERION && limit[k] > 0;
+    if (any) {
+        reals_put(&b->limit, l->features.real_is_float, (size_t)n, limit);
+        b->judge = lattice_launch(l, b->program, "link_break", NULL);
+        launch_bind_buffer(b->judge, "limit", &b->limit);
+        launch_bind_buffer(b->judge, "fate", &b->fate);
+        launch_set_int(b->judge, "n", l->layout->n_run - 2);
+    }
+    free(limit);
+}
+
+/* Cells judged by their stress. */
+static void create_principal(struct lattice_break *b, const struct lattice_cells *cells)
+{
+    static const char *const source[] = {"link_principal.cl", NULL};
+    struct lattice *l = b->l;
+    if (!l->features.principal) return;
+    char *text = lattice_features_options(&l->features, l->layout);
+    double *inverse = lattice_features_principal(cells, &l->options);
+    b->program_principal = program_build(l->dev, l->comm, "principal stress", text, source);
+    reals_put(&b->inverse, l->features.real_is_float, (size_t)l->n_kind, inverse);
+    free(inverse);
+    free(text);
+    buffer_reserve(&b->due, (size_t)l->layout->plane * sizeof(int32_t));
+    buffer_zero(&b->due);
+    b->follow = lattice_launch(l, b->program_principal, "link_due", NULL);
+    launch_bind_buffer(b->follow, "fate", &b->fate);
+    launch_set_int(b->follow, "n", l->layout->n_run - 2);
+    b->principal = lattice_launch(l, b->program_principal, "link_judge", &l->force_list);
+    launch_bind_all(b->principal, (const struct launch_binding[]){{"inverse", &b->inverse},
+                                      {"fate", &b->fate}, {"due", &b->due}, {0}});
+    launch_set_int(b->principal, "n", l->layout->n_force);
+    launch_bind_buffer(b->sever, "due", &b->due);
+}
+
 struct lattice_break *lattice_break_create(struct lattice *l, const struct lattice_cells *cells)
 {
     static const char *const source[] = {"link_break.cl", NULL};
     struct lattice_break *b = fail_alloc(sizeof *b);
-    int64_t n = (int64_t)l->n_kind * l->n_kind * BREAK_WIDTH;
-    double *limit = lattice_features_limits(cells, &l->options);
     char *text = lattice_features_options(&l->features, l->layout);
     b->l = l;
     b->program = program_build(l->dev, l->comm, "breakage", text, source);
     free(text);
     buffers_init(l->dev, b, buffers);
-    reals_put(&b->limit, l->features.real_is_float, (size_t)n, limit);
-    free(limit);
     buffer_reserve(&b->fate, (size_t)l->layout->plane * sizeof(int32_t));
     buffer_zero(&b->fate);
-    b->judge = lattice_launch(l, b->program, "link_break", NULL);
-    launch_bind_buffer(b->judge, "limit", &b->limit);
-    launch_bind_buffer(b->judge, "fate", &b->fate);
-    launch_set_int(b->judge, "n", l->layout->n_run - 2);
     b->sever = lattice_launch(l, b->program, "link_sever", &l->force_list);
     launch_bind_buffer(b->sever, "fate", &b->fate);
     launch_set_int(b->sever, "n", l->layout->n_force);
+    create_judge(b, cells);
+    create_principal(b, cells);
     create_release(b);
     return b;
 }
@@ -91,23 +132,33 @@ void lattice_break_free(struct lattice_break *b)
     device_finish(b->l->dev);
     launch_free(b->judge);
     launch_free(b->sever);
+    launch_free(b->follow);
+    launch_free(b->principal);
     launch_free(b->release);
     program_free(b->program);
+    program_free(b->program_principal);
     program_free(b->program_release);
     buffers_free(b, buffers);
     free(b);
 }
 
+/* launch: NULL is fine */
+static void run_at(struct launch *launch, int64_t x_in, int64_t v_in, int64_t n)
+{
+    if (!launch) return;
+    launch_set_long(launch, "x_in", x_in);
+    launch_set_long(launch, "v_in", v_in);
+    launch_run(launch, n);
+}
+
 void lattice_break_judge(struct lattice_break *b, int64_t x_in, int64_t v_in)
 {
     const struct lattice_layout *c = b->l->layout;
-    launch_set_long(b->judge, "x_in", x_in);
-    launch_set_long(b->judge, "v_in", v_in);
-    launch_run(b->judge, (int64_t)(c->n_run - 2) * c->run);
-    if (!b->release) return;
-    launch_set_long(b->release, "x_in", x_in);
-    launch_set_long(b->release, "v_in", v_in);
-    launch_run(b->release, (int64_t)c->n_force * c->run);
+    int64_t n_all = (int64_t)(c->n_run - 2) * c->run, n_own = (int64_t)c->n_force * c->run;
+    run_at(b->judge, x_in, v_in, n_all);
+    if (b->follow) launch_run(b->follow, n_all);
+    run_at(b->principal, x_in, v_in, n_own);
+    run_at(b->release, x_in, v_in, n_own);
 }
 
 void lattice_break_sever(struct lattice_break *b)
@@ -135,7 +186,13 @@ static void read_ints(
 void lattice_break_read(const struct lattice_break *b, int32_t *links, int32_t *fate)
 {
     if (links) read_ints(b->l, &b->l->word, CELL_LINKS, links);
-    if (fate) read_ints(b->l, &b->fate, -1, fate);
+    if (!fate) return;
+    int64_t n = b->l->layout->n_owned;
+    int32_t *word = fail_alloc((size_t)n * sizeof *word);
+    read_ints(b->l, &b->fate, -1, fate);
+    read_ints(b->l, &b->l->word, -1, word);
+    for (int64_t k = 0; k < n; k++) fate[k] |= WORD_DUE(word[k]) << FATE_DUE_AT;
+    free(word);
 }
 
 /* Bits of the mask, the others stay. */
@@ -152,8 +209,13 @@ static void write_ints(struct lattice *l, struct buffer *buffer, int32_t mask, c
 
 void lattice_break_write(struct lattice_break *b, const int32_t *links, const int32_t *fate)
 {
-    write_ints(b->l, &b->l->word, CELL_LINKS, links);
-    write_ints(b->l, &b->fate, -1, fate);
+    int64_t n = b->l->layout->n_owned;
+    int32_t due = 63 << WORD_DUE_AT, modes = (1 << FATE_DUE_AT) - 1,
+            *word = fail_alloc((size_t)n * sizeof *word);
+    for (int64_t k = 0; k < n; k++) word[k] = links[k] | fate[k] >> FATE_DUE_AT << WORD_DUE_AT;
+    write_ints(b->l, &b->l->word, CELL_LINKS | due, word);
+    write_ints(b->l, &b->fate, modes, fate);
+    free(word);
 }
 
 void lattice_break_read_release(const struct lattice_break *b, int32_t *fresh, double *released)

@@ -1,6 +1,6 @@
-/* Links of a lattice that break: judged once per step from the state at its start, gone at its end,
- * the same on any number of ranks. There only where the scene gives a strength; its kernels are
- * built only then.
+/* Links of a lattice that break: judged once per step from the state at its start, gone at its end
+ * (by the stress of cells: at the end of the next), the same on any number of ranks. There only
+ * where the scene gives a strength; its kernels are built only then.
  *
  * The largest frequency, so the limit of the time step, does not rise: links only disappear
  * (lattice_limit.h). Faces of a crack do not touch again. */
@@ -31,8 +31,8 @@ void lattice_break_bind(const struct lattice_break *b, struct launch *launch);
 const char *lattice_break_name(int mode);
 void lattice_break_count(const struct lattice_break *b, int64_t count[LATTICE_BREAK_MODES]);
 /* Of this rank's cells in the order of layout->gid, [n_owned] each; NULL is left out. links: those
- * left, LINK_BIT of kernels/lattice/law_volume.h; fate: how those at its upper faces broke
- * (kernels/lattice/lattice_words.h). */
+ * left, LINK_BIT of kernels/lattice/law_volume.h; fate: how those at its upper faces broke, and
+ * which of its links are due (kernels/lattice/lattice_words.h). */
 void lattice_break_read(const struct lattice_break *b, int32_t *links, int32_t *fate);
 /* The other way, before the first step. */
 void lattice_break_write(struct lattice_break *b, const int32_t *links, const int32_t *fate);

@@ -31,6 +31,8 @@ struct lattice_features lattice_features_of(
     f.rk = lattice_schemes_table(o->scheme)->is_rk;
     f.nystrom = lattice_schemes_table(o->scheme)->is_nystrom;
     f.breakage = o->strength != NULL;
+    for (int k = 0; k < cells->n_kind && o->strength; k++)
+        f.principal |= o->strength[k].principal > 0;
     f.energy = o->energy;
     return f;
 }
@@ -54,6 +56,7 @@ const struct feature_row lattice_features_table[] = {
     ROW(nystrom, "WITH_NYSTROM"),
     ROW(energy, "WITH_ENERGY"),
     ROW(breakage, "WITH_BREAK"),
+    ROW(principal, "WITH_PRINCIPAL"),
     {NULL, NULL, 0, 0}};
 /* clang-format on */
 
@@ -94,6 +97,15 @@ double *lattice_features_limits(const struct lattice_cells *cells, const struct 
             for (int a = 0; a < BREAK_WIDTH; a++) row[a] = value[a];
         }
     return table;
+}
+
+double *lattice_features_principal(
+    const struct lattice_cells *cells, const struct lattice_options *o)
+{
+    double *inverse = fail_alloc((size_t)cells->n_kind * sizeof *inverse);
+    for (int k = 0; k < cells->n_kind; k++)
+        inverse[k] = o->strength[k].principal > 0 ? 1 / o->strength[k].principal : 0;
+    return inverse;
 }
 
 double *lattice_features_cells(const struct lattice_cells *cells, const struct lattice_options *o)

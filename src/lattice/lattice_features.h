@@ -47,6 +47,7 @@ struct lattice_features {
     bool rk, nystrom; /* stages of a Runge-Kutta scheme; of Nystrom's */
     bool energy;      /* work and losses are accounted for */
     bool breakage;
+    bool principal; /* by the stress of cells: kernels/lattice/link_principal.cl */
 };
 
 struct lattice_features lattice_features_of(
@@ -60,6 +61,9 @@ char *lattice_features_options(
 double *lattice_features_links(const struct lattice_cells *cells, const struct lattice_options *o);
 /* Limits [n_kind][n_kind][BREAK_WIDTH]; options have strengths. */
 double *lattice_features_limits(const struct lattice_cells *cells, const struct lattice_options *o);
+/* One over the largest principal stress that cells bear [n_kind] [1/Pa], 0: any. */
+double *lattice_features_principal(
+    const struct lattice_cells *cells, const struct lattice_options *o);
 double *lattice_features_cells(const struct lattice_cells *cells, const struct lattice_options *o);
 /* Kicks [n + 2][n_kind][KICK_WIDTH] of a splitting: its evaluations; the first that ends a step
  * only; the first that begins one only. */

@@ -19,16 +19,20 @@ static struct link_strength strength_of(
     const struct scene *scene, const struct lattice_cells *cells, int kind)
 {
     const struct material *m = &scene->material[cells->kind[kind].material];
-    struct link_strength s = {HUGE_VAL, HUGE_VAL, (int)m->criterion};
+    struct link_strength s = {HUGE_VAL, HUGE_VAL, CRITERION_SUM, 0};
+    struct link_material own = lattice_frequency_material(m);
+    double h = cells->grid[cells->kind[kind].grid].h;
+    bool is_strain = m->plane == PLANE_STRAIN, by_energy = m->energy > 0;
     if (!m->has_strength) return s;
+    if (m->criterion == CRITERION_PRINCIPAL) {
+        double stress =
+            by_energy ? link_constants_principal(own, m->energy, h, is_strain) : m->tension;
+        s.principal = isfinite(stress) ? stress : 0;
+        return s;
+    }
+    s.criterion = (int)m->criterion;
     s.shear = m->shear;
-    s.tension = m->tension;
-    if (!(m->energy > 0)) return s;
-    /* by the pull alone: the link at a crack's tip also bends, and the sum of both would break it
-     * at 0.64 of the load (cases/notched_bar) */
-    s.criterion = CRITERION_LARGEST;
-    s.tension = link_constants_tension(lattice_frequency_material(m), m->energy,
-        cells->grid[cells->kind[kind].grid].h, m->plane == PLANE_STRAIN);
+    s.tension = by_energy ? link_constants_tension(own, m->energy, h, is_strain) : m->tension;
     return s;
 }
 
@@ -63,7 +67,8 @@ struct lattice_input *lattice_input_create(
     input->strength = fail_alloc((size_t)cells->n_kind * sizeof *input->strength);
     for (int k = 0; k < cells->n_kind; k++) {
         input->strength[k] = strength_of(scene, cells, k);
-        if (isfinite(input->strength[k].tension) || isfinite(input->strength[k].shear))
+        if (isfinite(input->strength[k].tension) || isfinite(input->strength[k].shear) ||
+            input->strength[k].principal > 0)
             input->options.strength = input->strength;
     }
     for (int m = 0; m < scene->n_measure; m++)

@@ -133,7 +133,7 @@ static void write_motion(struct sim *s, const struct lattice_state *t)
 /* Links and fates of a cell that its body can have. */
 static bool may_break_so(int32_t bits, int32_t links, int32_t fate)
 {
-    bool good = !(links & ~(bits & CELL_LINKS)) && fate >> 9 == 0;
+    bool good = !(links & ~(bits & CELL_LINKS)) && !(fate >> FATE_DUE_AT & ~links);
     for (int axis = 0; axis < 3; axis++) good &= FATE_MODE(fate, axis) <= LATTICE_BREAK_MODES;
     return good;
 }

@@ -101,7 +101,7 @@ struct link_strength link_constants_weaker(struct link_strength i, struct link_s
                 (i.tension <= j.tension &&
                     (i.shear < j.shear || (i.shear <= j.shear && i.criterion < j.criterion)));
     return (struct link_strength){
-        fmin(i.tension, j.tension), fmin(i.shear, j.shear), is_i ? i.criterion : j.criterion};
+        fmin(i.tension, j.tension), fmin(i.shear, j.shear), is_i ? i.criterion : j.criterion, 0};
 }
 
 struct link_limits link_constants_limits(struct link_strength strength, double h)
@@ -111,8 +111,19 @@ struct link_limits link_constants_limits(struct link_strength strength, double h
         6 / (area * h * strength.tension), 3 / (area * h * strength.shear)};
 }
 
-double link_constants_tension(struct link_material m, double energy, double h, bool plane_strain)
+/* K/sqrt(h) [Pa] of a crack that spends `energy`. */
+static double stress_at_tip(struct link_material m, double energy, double h, bool plane_strain)
 {
     double stiffness = plane_strain ? m.young / (1 - m.poisson * m.poisson) : m.young;
-    return 0.75 * sqrt(stiffness * energy / h);
+    return sqrt(stiffness * energy / h);
+}
+
+double link_constants_tension(struct link_material m, double energy, double h, bool plane_strain)
+{
+    return 0.75 * stress_at_tip(m, energy, h, plane_strain);
+}
+
+double link_constants_principal(struct link_material m, double energy, double h, bool plane_strain)
+{
+    return 0.64 * stress_at_tip(m, energy, h, plane_strain);
 }

@@ -39,6 +39,8 @@ struct link_stiffness {
 struct link_strength {
     double tension, shear; /* sigma_c, tau_c [Pa] */
     int criterion;         /* BREAK_* of kernels/lattice/law_break.h */
+    /* largest principal stress of a cell [Pa], kernels/lattice/law_principal.h; 0: any */
+    double principal;
 };
 
 /* One over what a link bears, for kernels/lattice/law_break.h; 0: anything. */
@@ -80,5 +82,10 @@ struct link_limits link_constants_limits(struct link_strength strength, double h
  * 0.759, nu from 0 to 0.45), so sigma_c = 0.75 sqrt(E' G_c/h) with E' = E in plane stress, E/(1 -
  * nu^2) in plane strain. */
 double link_constants_tension(struct link_material m, double energy, double h, bool plane_strain);
+/* The same for the largest principal stress of a cell. The worst cell at the tip of a K field bears
+ * 0.62 K/sqrt(h) where the crack is along the grid (0.620 to 0.632, nu from 0 to 0.45), 0.61 to
+ * 0.65 where it is inclined in a plane, 0.63 to 0.70 on {110} and {111} (docs/lattice.md): 0.64 in
+ * sigma_c = 0.64 sqrt(E' G_c/h) is between. */
+double link_constants_principal(struct link_material m, double energy, double h, bool plane_strain);
 
 #endif

@@ -29,8 +29,8 @@ struct scene_time {
 
 enum damping_by { DAMPING_MASS, DAMPING_LINK };
 enum plane { PLANE_STRESS, PLANE_STRAIN };
-/* BREAK_* of kernels/lattice/law_break.h */
-enum criterion { CRITERION_SUM, CRITERION_LARGEST, CRITERION_STRESS };
+/* BREAK_* of kernels/lattice/law_break.h, then that of law_principal.h */
+enum criterion { CRITERION_SUM, CRITERION_LARGEST, CRITERION_STRESS, CRITERION_PRINCIPAL };
 struct material {
     char *name;
     double density; /* [kg/m3] */

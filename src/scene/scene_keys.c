@@ -71,12 +71,14 @@ const struct scene_key scene_keys[] = {
     .text = "strength of the links; between two materials the weaker one counts"},
 {"materials.NAME.strength.tension", KEY_NUMBER, ONE_OF, UNIT_PRESSURE, .range = ABOVE_ZERO,
     .special = "none", .special_value = HUGE_VAL, .at = AT(material, tension),
-    .text = "tensile strength: normal stress on a face at which its link breaks"},
+    .text = "tensile strength: normal stress on a face at which its link breaks, or largest "
+        "principal stress of a cell, as criterion says"},
 {"materials.NAME.strength.energy", KEY_NUMBER, ONE_OF, UNIT_FRACTURE, .range = ABOVE_ZERO,
     .at = AT(material, energy),
-    .text = "fracture energy G_c, in place of tension and criterion: tensile strength 0.75 sqrt(E' "
-        "G_c/h) for cells of edge h, criterion largest; a slow crack then dissipates G_c for any "
-        "cell size"},
+    .text = "fracture energy G_c, in place of tension: tensile strength 0.64 sqrt(E' G_c/h) for "
+        "cells of edge h with criterion principal, so that a slow crack dissipates G_c in any "
+        "direction, or 0.75 sqrt(E' G_c/h) with criterion largest (the default beside energy), "
+        "where this holds for cracks along the grid only"},
 {"materials.NAME.strength.plane", KEY_CHOICE, .fallback = "strain", .words = "stress|strain",
     .when = "energy", .at = AT(material, plane),
     .text = "modulus E' of the formula above: E (plane stress: thin plates) or E/(1 - nu^2) (plane "
@@ -84,10 +86,12 @@ const struct scene_key scene_keys[] = {
 {"materials.NAME.strength.shear", KEY_NUMBER, OPTIONAL, UNIT_PRESSURE, "none", ABOVE_ZERO,
     .special = "none", .special_value = HUGE_VAL, .at = AT(material, shear),
     .text = "shear strength: shear stress on a face at which its link breaks"},
-{"materials.NAME.strength.criterion", KEY_CHOICE, .fallback = "stress",
-    .words = "sum|largest|stress", .when = "tension", .at = AT(material, criterion),
-    .text = "failure criterion: the sum of the utilisations by normal force and moments, the "
-        "largest of them, or the normal stress at the face's edge"},
+{"materials.NAME.strength.criterion", KEY_CHOICE, OPTIONAL,
+    .words = "sum|largest|stress|principal", .at = AT(material, criterion),
+    .text = "failure criterion: of a link the sum of the utilisations by normal force and moments, "
+        "the largest of them, or the normal stress at the face's edge, all of which depend on the "
+        "direction of the grid; or of a cell its largest principal stress, which does not; "
+        "without it stress, beside energy largest"},
 
 {"contacts", KEY_LIST, .only = "particles", .at = AT(scene, contact),
     .count_at = AT(scene, n_contact), .size = sizeof(struct contact),

@@ -57,6 +57,9 @@ class Case(unittest.TestCase):
             "output": {"fields": ["velocity", "angular_velocity", "radius", "id"]},
             **scene,
         }
+        return State(self.run_folder(scene, out))
+
+    def run_folder(self, scene, out="out"):
         (self.dir / "scene.yaml").write_text(json.dumps(scene, indent=1))
         done = subprocess.run(
             [DEMOCLES, "run", "scene.yaml", "-o", out, "--force", "--quiet"],
@@ -68,7 +71,7 @@ class Case(unittest.TestCase):
             check=False,
         )
         self.assertEqual(done.returncode, 0, done.stdout)
-        return State(self.dir / out)
+        return self.dir / out
 
     def below(self, what, value, bound):
         print(f"{what}: {value:.3g} (bound {bound:.3g})")

@@ -1,79 +1,6 @@
 #include "lattice_host.h"
 
-#include <stdlib.h>
 #include <string.h>
-
-#include "comm/fail.h"
-#include "lattice/lattice_places.h"
-
-_Static_assert((int)CRITERION_SUM == BREAK_SUM && (int)CRITERION_LARGEST == BREAK_LARGEST &&
-                   (int)CRITERION_STRESS == BREAK_STRESS,
-    "scene and law");
-
-static real *reals(double *value, int64_t n)
-{
-    real *r = fail_alloc((size_t)n * sizeof *r);
-    for (int64_t i = 0; i < n; i++) r[i] = (real)value[i];
-    free(value);
-    return r;
-}
-
-struct host *host_create(const struct lattice_cells *cells, const struct lattice_options *options)
-{
-    struct host *h = fail_alloc(sizeof *h);
-    struct lattice_places *places = lattice_places_create(cells, (struct lattice_lay){0, 16});
-    size_t n = (size_t)cells->n;
-    int k = cells->n_kind;
-    h->cells = cells;
-    h->options = *options;
-    h->scheme = lattice_schemes_table(options->scheme);
-    h->n = cells->n;
-    h->neighbour = fail_alloc(n * sizeof *h->neighbour);
-    h->now = fail_alloc(n * sizeof *h->now);
-    h->next = fail_alloc(n * sizeof *h->next);
-    h->start = fail_alloc(n * sizeof *h->start);
-    h->sums = fail_alloc(n * sizeof *h->sums);
-    h->p = fail_alloc(n * sizeof *h->p);
-    h->links = fail_alloc(n * sizeof *h->links);
-    h->fate = fail_alloc(n * sizeof *h->fate);
-    h->p_still = fail_alloc(n * sizeof *h->p_still);
-    h->ledger = fail_alloc(n * sizeof *h->ledger);
-    h->last_a = fail_alloc(n * sizeof *h->last_a);
-    h->last_b = fail_alloc(n * sizeof *h->last_b);
-    h->link = reals(lattice_features_links(cells, options), (int64_t)k * k * LINK_WIDTH);
-    h->cell = reals(lattice_features_cells(cells, options), (int64_t)k * CELL_WIDTH);
-    if (!h->scheme->is_rk)
-        h->kick = reals(
-            lattice_features_kicks(cells, options), (int64_t)(h->scheme->n + 2) * k * KICK_WIDTH);
-    if (options->strength)
-        h->limit = reals(lattice_features_limits(cells, options), (int64_t)k * k * BREAK_WIDTH);
-    if (WITH_LOADS) {
-        h->rows = fail_alloc((size_t)options->n_row * LOAD_WIDTH * sizeof *h->rows);
-        h->rows_double = fail_alloc((size_t)options->n_row * LOAD_WIDTH * sizeof *h->rows_double);
-    }
-    for (int64_t i = 0; i < h->n; i++) {
-        h->now[i].q = quat_of(1, 0, 0, 0);
-        h->links[i] = cells->bits[i] & CELL_LINKS;
-        if (cells->v)
-            h->now[i].v = v3((real)cells->v[i][0], (real)cells->v[i][1], (real)cells->v[i][2]);
-        if (cells->w)
-            h->now[i].w = v3((real)cells->w[i][0], (real)cells->w[i][1], (real)cells->w[i][2]);
-        for (int f = 0; f < 6; f++)
-            h->neighbour[i][f] =
-                cells->bits[i] & CELL_LINK(f) ? lattice_places_neighbour(places, cells, i, f) : -1;
-    }
-    lattice_places_free(places);
-    return h;
-}
-
-void host_free(struct host *h)
-{
-    void *all[] = {h->neighbour, h->now, h->next, h->start, h->sums, h->p, h->p_still, h->links,
-        h->fate, h->ledger, h->last_a, h->last_b, h->limit, h->link, h->cell, h->kick, h->rows,
-        h->rows_double};
-    for (size_t k = 0; k < sizeof all / sizeof *all; k++) free(all[k]);
-    free(h);
-}
 
 static struct link_constants constants(const struct host *h, int64_t lower, int64_t higher)
 {
@@ -225,6 +152,43 @@ static void split(struct host *h, int k, double drift, int count, struct link_ce
     }
 }
 
+/* Stress of a cell in its own axes, and the forces that make it. */
+static struct stress stress_of(
+    const struct host *h, int64_t i, bool extrapolate, struct lattice_through *f)
+{
+    struct lattice_load load = {.traction = 0};
+    vec3 *const force[6] = {&f->x[0], &f->x[1], &f->y[0], &f->y[1], &f->z[0], &f->z[1]};
+    real edge = h->link[h->cells->kind_of[i] * (h->cells->n_kind + 1) * LINK_WIDTH + 6];
+    for (int face = 0; face < 6; face++) *force[face] = share_of(h, i, face, false).force;
+    if (WITH_LOADS) load = load_of(h, i);
+    return lattice_stress_of(*f, h->now[i], load, h->links[i], edge, extrapolate);
+}
+
+/* What is due goes with this step; then every cell says what is due next. */
+static void judge_cells(struct host *h)
+{
+    for (int64_t i = 0; i < h->n; i++)
+        for (int axis = 0; axis < 3; axis++) {
+            int64_t j = h->neighbour[i][2 * axis + 1];
+            if (j >= 0)
+                h->fate[i] |= lattice_due(h->links[i] | h->due[i] << WORD_DUE_AT,
+                    h->links[j] | h->due[j] << WORD_DUE_AT, axis);
+        }
+    for (int64_t i = 0; i < h->n; i++) {
+        int fate[3];
+        struct lattice_through f;
+        struct stress s = stress_of(h, i, false, &f);
+        for (int axis = 0; axis < 3; axis++) {
+            int64_t j = h->neighbour[i][2 * axis];
+            fate[axis] = j < 0 ? 0 : h->fate[j];
+        }
+        bool waits = lattice_gone(h->fate[i], fate[0], fate[1], fate[2]) & h->links[i];
+        h->due[i] = !waits && principal_fails(s, h->inverse[h->cells->kind_of[i]])
+                        ? lattice_principal(f, s, h->now[i], h->links[i])
+                        : 0;
+    }
+}
+
 /* Every link once, in the state that h->now and h->p are of. */
 static void judge(struct host *h)
 {
@@ -240,6 +204,7 @@ static void judge(struct host *h)
             h->fate[i] |= lattice_fate(
                 axis, h->now[i], h->now[j], constants(h, i, j), h->p[i], h->p[j], limits);
         }
+    if (WITH_PRINCIPAL) judge_cells(h);
 }
 
 static void part(struct host *h)
@@ -375,12 +340,7 @@ void host_stress(const struct host *h, struct link_cell *seen, bool extrapolate,
     pressures(&copy);
     for (int64_t i = 0; i < h->n; i++) {
         struct lattice_through f;
-        struct lattice_load load = {.traction = 0};
-        vec3 *const force[6] = {&f.x[0], &f.x[1], &f.y[0], &f.y[1], &f.z[0], &f.z[1]};
-        for (int face = 0; face < 6; face++) *force[face] = share_of(&copy, i, face, false).force;
-        if (WITH_LOADS) load = load_of(&copy, i);
-        real edge = h->link[h->cells->kind_of[i] * (h->cells->n_kind + 1) * LINK_WIDTH + 6];
-        struct stress s = lattice_stress_of(f, seen[i], load, h->links[i], edge, extrapolate);
+        struct stress s = stress_of(&copy, i, extrapolate, &f);
         stress[i] = lattice_stress_world(s, seen[i]);
         von_mises[i] = stress_von_mises(s);
     }

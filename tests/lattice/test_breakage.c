@@ -6,6 +6,7 @@
 
 #include "comm/fail.h"
 #include "lattice_bodies.h"
+#include "kernels/lattice/lattice_words.h"
 #include "lattice/lattice_break.h"
 #include "lattice/lattice_energy.h"
 #include "tests/mpi_check.h"
@@ -78,28 +79,29 @@ static void limits(enum lattice_scheme scheme, bool turn)
     for (int axis = 0; axis < 3; axis++) {
         int c = turn ? axis : 2 - axis; /* the criterion; all of them are the same here */
         assert_int_equal(
-            mode_of(axis, pull, (struct link_strength){stress, none, c}, scheme, turn), TENSION);
+            mode_of(axis, pull, (struct link_strength){stress, none, c, 0}, scheme, turn), TENSION);
         assert_int_equal(
-            mode_of(axis, pull, (struct link_strength){more, none, c}, scheme, turn), -1);
+            mode_of(axis, pull, (struct link_strength){more, none, c, 0}, scheme, turn), -1);
         assert_int_equal(
-            mode_of(axis, push, (struct link_strength){stress, none, c}, scheme, turn), -1);
+            mode_of(axis, push, (struct link_strength){stress, none, c, 0}, scheme, turn), -1);
         assert_int_equal(
-            mode_of(axis, slide, (struct link_strength){none, stress, c}, scheme, turn), SHEAR);
+            mode_of(axis, slide, (struct link_strength){none, stress, c, 0}, scheme, turn), SHEAR);
         assert_int_equal(
-            mode_of(axis, slide, (struct link_strength){none, more, c}, scheme, turn), -1);
-        assert_int_equal(
-            mode_of(axis, twist, (struct link_strength){none, below * edge / 2, c}, scheme, turn),
+            mode_of(axis, slide, (struct link_strength){none, more, c, 0}, scheme, turn), -1);
+        assert_int_equal(mode_of(axis, twist, (struct link_strength){none, below * edge / 2, c, 0},
+                             scheme, turn),
             TWIST);
-        assert_int_equal(
-            mode_of(axis, twist, (struct link_strength){none, above * edge / 2, c}, scheme, turn),
+        assert_int_equal(mode_of(axis, twist, (struct link_strength){none, above * edge / 2, c, 0},
+                             scheme, turn),
             -1);
         /* faces that turn by any angle also open a little */
         if (turn && c != CRITERION_LARGEST) continue;
         assert_int_equal(
-            mode_of(axis, bend, (struct link_strength){below * edge, none, c}, scheme, turn),
+            mode_of(axis, bend, (struct link_strength){below * edge, none, c, 0}, scheme, turn),
             BENDING);
         assert_int_equal(
-            mode_of(axis, bend, (struct link_strength){above * edge, none, c}, scheme, turn), -1);
+            mode_of(axis, bend, (struct link_strength){above * edge, none, c, 0}, scheme, turn),
+            -1);
     }
 }
 
@@ -115,11 +117,11 @@ static void schemes_agree(void **state)
     const struct strain pull = {{1.0 / 1024, 0, 0}, {0, 0, 0}};
     (void)state;
     for (int k = 0; k < 5; k++) {
-        assert_int_equal(
-            mode_of(0, pull, (struct link_strength){2, HUGE_VAL, CRITERION_SUM}, schemes[k], true),
+        assert_int_equal(mode_of(0, pull, (struct link_strength){2, HUGE_VAL, CRITERION_SUM, 0},
+                             schemes[k], true),
             TENSION);
         assert_int_equal(
-            mode_of(0, pull, (struct link_strength){nextafter(2, 3), HUGE_VAL, CRITERION_SUM},
+            mode_of(0, pull, (struct link_strength){nextafter(2, 3), HUGE_VAL, CRITERION_SUM, 0},
                 schemes[k], true),
             -1);
     }
@@ -159,7 +161,7 @@ static void as_if_never_there(void **state)
     const int size[3] = {17, 9, 4};
     const struct link_material material[2] = {{1000, 2e7, 0.3, 0}, {700, 1e7, 0.1, 0}};
     const struct link_strength strength[2] = {
-        {HUGE_VAL, HUGE_VAL, CRITERION_SUM}, {1e-30, 1e-30, CRITERION_SUM}};
+        {HUGE_VAL, HUGE_VAL, CRITERION_SUM, 0}, {1e-30, 1e-30, CRITERION_SUM, 0}};
     (void)state;
     for (int k = 0; k < 5; k++) {
         struct lattice_cells *cells = bodies_create(1, size, 0.1, 2, bodies_mixed);
@@ -195,6 +197,55 @@ static void as_if_never_there(void **state)
     }
 }
 
+/* A run that goes on from links and fates at any step has the bits of one that never stopped: also
+ * where a link is due, which goes with the step after. */
+static void due_is_kept(void **state)
+{
+    const int size[3] = {17, 9, 4};
+    const struct link_material material = {1000, 2e7, 0.3, 0};
+    const struct link_strength strength = {HUGE_VAL, HUGE_VAL, CRITERION_SUM, 1e5};
+    struct lattice_cells *cells = bodies_create(1, size, 0.1, 1, bodies_block);
+    struct lattice_options o = {
+        .dt = 1e-4, .material = &material, .n_material = 1, .n_row = 1, .strength = &strength};
+    size_t n = (size_t)cells->n;
+    struct lattice_motion x = bodies_motion(cells->n);
+    int32_t *links = fail_alloc(n * sizeof *links), *fate = fail_alloc(n * sizeof *fate);
+    int64_t count[LATTICE_BREAK_MODES];
+    int n_due = 0;
+    (void)state;
+    for (int64_t i = 0; i < cells->n; i++)
+        x.v[i][0] = 8 * sin(cells->at[i][0]), x.v[i][1] = 4 * cos(cells->at[i][1]);
+    struct lattice *l = lattice_create(dev, comm, cells, &o);
+    lattice_write(l, &x);
+    lattice_begin_step(l);
+    for (int step = 1; step <= 12; step++) {
+        uint64_t whole, resumed;
+        struct lattice *other = lattice_create(dev, comm, cells, &o);
+        lattice_advance(l, true);
+        lattice_read(l, &x);
+        lattice_break_read(l->breakage, links, fate);
+        for (int64_t i = 0; i < cells->n; i++) n_due += fate[i] >> FATE_DUE_AT != 0;
+        lattice_write(other, &x);
+        lattice_break_write(other->breakage, links, fate);
+        lattice_begin_step(l);
+        lattice_begin_step(other);
+        lattice_advance(l, true);
+        lattice_advance(other, true);
+        assert_int_equal(lattice_digest(l, &whole), 0);
+        assert_int_equal(lattice_digest(other, &resumed), 0);
+        assert_true(whole == resumed);
+        lattice_begin_step(l);
+        lattice_free(other);
+    }
+    lattice_break_count(l->breakage, count);
+    assert_true(n_due > 20 && count[0] > 20 && !count[1] && !count[2] && !count[3]);
+    lattice_free(l);
+    free(links);
+    free(fate);
+    bodies_free(cells);
+    bodies_motion_free(&x);
+}
+
 /* Balance of energy over the time 2 ms, over what is released: a block in two halves, pulled apart
  * and moving, whose joint breaks at once. */
 static double unbalanced(enum lattice_scheme scheme, double dt, double *released)
@@ -202,7 +253,7 @@ static double unbalanced(enum lattice_scheme scheme, double dt, double *released
     const int size[3] = {10, 8, 3};
     const struct link_material material[2] = {{1000, 2e7, 0.3, 0}, {700, 1e7, 0.1, 0}};
     const struct link_strength strength[2] = {
-        {HUGE_VAL, HUGE_VAL, CRITERION_SUM}, {1e-30, 1e-30, CRITERION_SUM}};
+        {HUGE_VAL, HUGE_VAL, CRITERION_SUM, 0}, {1e-30, 1e-30, CRITERION_SUM, 0}};
     struct lattice_cells *cells = bodies_create(1, size, 0.1, 2, bodies_block);
     struct lattice_options o = {.scheme = scheme,
         .dt = dt,
@@ -254,8 +305,8 @@ static void released(void **state)
 /* Argument: none, or schemes for what takes longer. */
 int main(int argc, char **argv)
 {
-    const struct CMUnitTest some[] = {
-        cmocka_unit_test(one_link), cmocka_unit_test(as_if_never_there)};
+    const struct CMUnitTest some[] = {cmocka_unit_test(one_link),
+        cmocka_unit_test(as_if_never_there), cmocka_unit_test(due_is_kept)};
     const struct CMUnitTest more[] = {cmocka_unit_test(schemes_agree), cmocka_unit_test(released)};
     return argc > 1 && strcmp(argv[1], "schemes") == 0 ? DEVICE_TESTS(more) : DEVICE_TESTS(some);
 }

@@ -54,7 +54,9 @@ static struct lattice_cells *make(struct lattice_options *o, struct link_materia
     o->n_row = WITH_LOADS ? 5 : 1;
     o->rows_at = rows_at;
     for (int k = 0; k < 4; k++)
-        strength[k] = (struct link_strength){(4 + 2 * k) * 1e5, (10 - 2 * k) * 1e5, k % 3};
+        strength[k] = (struct link_strength){(4 + 2 * k) * 1e5, (10 - 2 * k) * 1e5, k % 3, 0};
+    for (int k = 0; k < 2 && WITH_PRINCIPAL; k++)
+        strength[k] = (struct link_strength){HUGE_VAL, HUGE_VAL, 0, (2 + k) * 1e5};
     o->strength = WITH_BREAK ? strength : NULL;
     for (int a = 0; a < 3; a++) o->gravity[a] = WITH_GRAVITY ? gravity[a] : 0;
     struct lattice_cells *c =
@@ -75,7 +77,8 @@ static void check_features(const struct lattice_features *f, enum lattice_scheme
     assert_true(f->link_damping == WITH_LINK_DAMPING && f->mass_damping == WITH_MASS_DAMPING &&
                 f->fix == WITH_FIX && f->loads == WITH_LOADS);
     assert_true(f->gravity == WITH_GRAVITY && f->kinds == WITH_KINDS && f->rk == WITH_RK &&
-                f->energy == WITH_ENERGY && f->breakage == WITH_BREAK);
+                f->energy == WITH_ENERGY && f->breakage == WITH_BREAK &&
+                f->principal == WITH_PRINCIPAL);
 }
 
 static void same(const char *what, int64_t i, const double *device, double x, double y, double z)
@@ -154,7 +157,7 @@ static int64_t compare_links(
     lattice_break_count(l->breakage, count);
     for (int64_t i = 0; i < h->n; i++) {
         assert_int_equal(links[i], h->links[i]);
-        assert_int_equal(fate[i], h->fate[i]);
+        assert_int_equal(fate[i], h->fate[i] | h->due[i] << FATE_DUE_AT);
         left += __builtin_popcount((unsigned)links[i]);
         for (int axis = 0; axis < 3; axis++)
             if (FATE_MODE(fate[i], axis)) counted[FATE_MODE(fate[i], axis) - 1]++;

@@ -10,6 +10,7 @@ static void check_materials(const struct material *m)
     assert_true(m[0].mass_damping == 120 && m[0].link_damping == 1e-8 && m[0].has_strength &&
                 m[0].tension == 400e6 && m[0].shear == 200e6);
     assert_true(m[0].criterion == CRITERION_STRESS && m[0].energy == 0);
+    assert_int_equal(m[1].criterion, CRITERION_LARGEST); /* beside `energy` */
     assert_true(fabs(m[1].mass_damping - 4 * M_PI * 200 * 0.05) < 1e-12 && m[1].link_damping == 0);
     assert_true(m[1].poisson == -0.2 && m[1].tension == 0 && m[1].energy == 8 &&
                 m[1].plane == PLANE_STRESS);
@@ -181,6 +182,13 @@ static void materials(void **state)
     fixture_expect(f, set, 1, &message, 1);
     fixture_expect_one(f, SCENE(GOOD ", strength: {tension: 1, energy: 1}", ""),
         "scene.yaml:3:76: materials.m.strength: only one of 'tension', 'energy' can be given");
+    fixture_expect_one(f, SCENE(GOOD ", strength: {energy: 1, criterion: sum}", ""),
+        "scene.yaml:3:86: materials.m.strength.criterion: beside 'energy' it is largest or "
+        "principal");
+    fixture_expect_one(f,
+        SCENE(GOOD ", strength: {tension: 1, shear: 1, criterion: principal}", ""),
+        "scene.yaml:3:83: materials.m.strength.shear: not with criterion: principal, which breaks "
+        "shear by its principal stress");
     fixture_expect_one(f, SCENE(GOOD ", strength: {energy: 1 J}", ""),
         "scene.yaml:3:72: materials.m.strength.energy: 'J' is the unit of an energy; expected an "
         "energy per area, as in '1 J/m2'");

@@ -177,7 +177,7 @@ class Lattice(Case):
 
     def breaks(self, precision, scheme):
         whole, found = self.check(
-            lattice_runs.torn(),
+            lattice_runs.torn(principal=precision == "single"),
             precision,
             300,
             (190, 240),

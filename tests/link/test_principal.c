@@ -1,0 +1,95 @@
+/* The largest principal stress of a cell: when it fails, and which link then breaks. */
+#include "kernels/lattice/lattice_through.h"
+#include "tests/limit/limit_test.h"
+
+static struct quat any_turn(void)
+{
+    struct quat q = quat_of(1, 0, 0, 0);
+    for (int k = 0; k < 4; k++) {
+        double x = uniform(-1, 1), y = uniform(-1, 1), z = uniform(-1, 1);
+        q = quat_turn(q, p3((preal)x, (preal)y, (preal)z));
+    }
+    return q;
+}
+
+/* Principal values first > second, third along the axes of q; the first axis. */
+static struct stress stress_with(double first, double second, double third, struct quat q, vec3 *d)
+{
+    struct stress_rows rows = {
+        v3((real)first, 0, 0), v3(0, (real)second, 0), v3(0, 0, (real)third)};
+    *d = v3_of_p3(quat_rotate(q, p3(1, 0, 0)));
+    return stress_parts(stress_in_world(rows, q), 63);
+}
+
+/* In any direction, whatever the others are: also large pressures. */
+static void fails(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 3000; k++) {
+        double limit = exp(uniform(-3, 20)), second = limit * uniform(-3, 0.99),
+               third = limit * uniform(-3, 0.99);
+        struct quat q = any_turn();
+        vec3 d;
+        assert_true(principal_fails(
+            stress_with(limit * (1 + 1e-10), second, third, q, &d), (real)(1 / limit)));
+        assert_false(principal_fails(
+            stress_with(limit * (1 - 1e-10), second, third, q, &d), (real)(1 / limit)));
+        assert_true(
+            principal_fails(stress_with(limit * 2, limit * 1.5, third, q, &d), (real)(1 / limit)));
+        assert_true(principal_fails(
+            stress_with(limit * 3, limit * 2, limit * 1.5, q, &d), (real)(1 / limit)));
+        assert_false(principal_fails(stress_with(limit, second, third, q, &d), 0));
+    }
+}
+
+/* Pure shear fails where the shear stress is the limit: to the bit. */
+static void shear(void **state)
+{
+    const double next = nextafter(8, 9);
+    (void)state;
+    assert_true(principal_fails((struct stress){.xy = 8}, (real)0.125));
+    assert_true(principal_fails((struct stress){.zx = -8}, (real)0.125));
+    assert_false(principal_fails((struct stress){.yz = 8}, (real)(1 / next)));
+}
+
+static void direction(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 3000; k++) {
+        double size = exp(uniform(-3, 20));
+        struct quat q = any_turn();
+        vec3 d, found = principal_direction(
+                    stress_with(size, size * uniform(-3, 0.98), size * uniform(-3, 0.98), q, &d));
+        double along = (double)v3_dot(found, d), all = (double)v3_dot(found, found);
+        assert_true(fabs(along * along / all - 1) < 1e-12);
+    }
+}
+
+/* In a uniform stress the link most normal to the crack, the first of two that are equal, and one
+ * that exists. */
+static void link(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 3000; k++) {
+        struct quat q = any_turn();
+        vec3 d;
+        struct stress s = stress_with(2, uniform(-3, 1), uniform(-3, 1), q, &d);
+        struct stress_rows r = stress_symmetric(s);
+        struct link_cell c = {.q = quat_of(1, 0, 0, 0)};
+        struct lattice_through f = {
+            {v3_scale(-1, r.x), r.x}, {v3_scale(-1, r.y), r.y}, {v3_scale(-1, r.z), r.z}};
+        double part[3] = {fabs((double)d.x), fabs((double)d.y), fabs((double)d.z)};
+        int found = lattice_principal(f, s, c, 63), upper = lattice_principal(f, s, c, 42),
+            axis = part[0] > part[1] ? (part[0] > part[2] ? 0 : 2) : (part[1] > part[2] ? 1 : 2);
+        assert_true((found == 1 << (2 * axis)) || found == 2 << (2 * axis));
+        assert_int_equal(upper, 2 << (2 * axis));
+        assert_int_equal(lattice_principal(f, s, c, 0), 0);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(fails), cmocka_unit_test(shear),
+        cmocka_unit_test(direction), cmocka_unit_test(link)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
