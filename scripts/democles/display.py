@@ -1,8 +1,17 @@
 """A display for VTK, which in Debian 12 draws through X only."""
 import atexit
+import ctypes
 import os
 import shutil
+import signal
 import subprocess
+
+PR_SET_PDEATHSIG = 1  # linux/prctl.h
+
+
+def end_with_parent():
+    """In the server's process: also where VTK aborts the one that started it."""
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
 
 
 def ensure():
@@ -19,6 +28,7 @@ def ensure():
         ["Xvfb", "-displayfd", str(told), "-noreset", "-nolisten", "tcp"]
         + ["-screen", "0", "1280x1024x24"],
         pass_fds=(told,),
+        preexec_fn=end_with_parent,
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
