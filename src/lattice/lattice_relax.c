@@ -204,7 +204,7 @@ bool lattice_relax_second(struct lattice_relax *r, double tolerance)
     free(v);
     free(a);
     if (square > 0 && isfinite(square)) set_damping(r, 2 * sqrt(square));
-    return r->rest.left <= tolerance * r->rest.scale && loads_are_last(r);
+    return isfinite(r->rest.left) && r->rest.left <= tolerance * r->rest.scale && loads_are_last(r);
 }
 
 void lattice_relax_note(const struct lattice_relax *r, double note[LATTICE_RELAX_NOTES])

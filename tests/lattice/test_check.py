@@ -151,6 +151,12 @@ class Floating(cli.Case):
                 self.assertEqual(code, 3, text)
                 self.assertRegex(text, rf"bodies\[0\]: 'block' {how}, and its .*: {force} about")
 
+    def test_too_large_a_load(self):
+        """What is infinite is not within a tolerance of the infinite: no state of rest."""
+        pull = self.load(0.0999, 1, "force: [0, 1e160, 0]")
+        code, text = self.end(pull + ", " + self.load(-1, 0.006, "fix: [x, y, z, rx, ry, rz]"))
+        self.assertEqual(code, 5, text)
+
     def test_balanced(self):
         """Loads that balance; a motion that is held; a spin that carries nothing."""
         right, left = (0.0999, 1), (-1, 0.0001)
