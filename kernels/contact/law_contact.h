@@ -61,7 +61,7 @@ LAW struct contact_step contact_begin(
     struct contact_step s;
     real part;
 
-    s.normal = normal_step_of(k.delta, k.v_n, dt, state, p);
+    s.normal = normal_step_of(k, dt, state, p);
     part = state != 0 ? (real)1 : r_clamp(s.normal.steps, (real)0, (real)1);
     s.carry = slider_carry_of(k, p, s.normal.factors.spring, part * dt, dt);
     s.cap_t = tangential_cap(s.normal.force, s.normal.bonded, p);
@@ -147,7 +147,9 @@ LAW struct contact_result contact_law(
     if (WITH_TANGENTIAL) {
         s.trial_t =
             contact_select(s.normal.alive && p.mu > 0, slider_trial(h->xi, k.v_t, s.carry, k.n));
-        s.slide = tangential_force(s.trial_t, k.v_t_end, s.cap_t, s.normal.factors, p);
+        vec3 before = contact_select(
+            s.normal.alive && p.mu > 0, slider_trial(h->xi, v3(0, 0, 0), s.carry, k.n));
+        s.slide = tangential_force(s.trial_t, before, k, s.cap_t, s.normal.factors, p);
         r.force = v3_fma(-s.normal.force, k.n, s.slide.force);
         r.couple = v3_cross(k.n, s.slide.force);
     }
@@ -156,8 +158,10 @@ LAW struct contact_result contact_law(
         int epsd = contact_is_epsd(p);
         s.trial_r =
             contact_select(s.normal.alive && epsd, slider_trial(h->theta, k.w_r, s.carry, k.n));
-        s.roll =
-            rolling_epsd(s.trial_r, k.w_r_end, rolling_cap(s.normal.force, p), s.normal.factors, p);
+        vec3 before = contact_select(
+            s.normal.alive && epsd, slider_trial(h->theta, v3(0, 0, 0), s.carry, k.n));
+        s.roll = rolling_epsd(
+            s.trial_r, before, k.w_r_end, rolling_cap(s.normal.force, p), s.normal.factors, p);
         r.moment.x = epsd ? s.roll.force.x : r.moment.x;
         r.moment.y = epsd ? s.roll.force.y : r.moment.y;
         r.moment.z = epsd ? s.roll.force.z : r.moment.z;

@@ -1,8 +1,26 @@
 /* How large a time step the contacts of one element allow: a bound that holds for any network of
  * spheres and walls.
  *
- * Leapfrog with dashpots of the half step is stable iff 4 M - dt^2 K - 2 dt C is positive. A
- * contact with relative displacement u, and rotations joined to it by the levers l, is bounded by
+ * With V = dt v^{n+1/2} = x^{n+1} - x^n and dashpots gamma (p v^{n+1/2} + q (dt/2) a^n), p and q >=
+ * 0 (law_normal.h: keep and gain), leapfrog is
+ *     M (V' - V) = -dt^2 K x^{n+1} - dt sum gamma [p V + (q/2) (V - V_)],  V_, V' one step off,
+ * the sum over contacts, each with its own p and q. Times (V' + V)/2 it is a balance of
+ *     E = V (M - dt^2 K/4) V/2 + dt^2 xm K xm/2,  xm = (x^{n+1} + x^n)/2,
+ * and of each dashpot's - gamma (dt/2) (a + b) [p b + (q/2) (b - c)] with a, b, c its velocities in
+ * V', V, V_. With g = (q + p)/8 and
+ *     Q(b, c) = -(p + q)/4 b^2 + g (b + c)^2
+ * what is left of that, (a + b) [p b + (q/2) (b - c)]/2 - Q(a, b) + Q(b, c), is a sum of squares (a
+ * form with a kernel (1, -1, 1) whose minor (p^2 + 2 p q)/64 is not negative). So E + dt sum gamma
+ * Q never grows, and it is positive if
+ *     4 M - dt^2 K - 2 dt C is,  C = sum of gamma (p + q) per contact,
+ * for any network and any mixture. p = q = 1 is the plain prediction (x'' = -w^2 x - 2 z w x' is
+ * then stable iff (w dt)^2 + 8 z w dt < 4: sharp, the root -1 appears there), p = 1, q = 0 the
+ * lagged dashpot. Here p <= 1 and q = max(1 - c, 0)/(1 + c), so p + q <= max(2/(1 + c), 1), which
+ * has c = gamma dt/(2 m*), tangential 3.5 gamma dt/(2 m*), in it; rolling has p = q = 1. gamma (p
+ * + q) grows with gamma, and falls with the dt in c: the bound holds for dt if it gives at least dt
+ * with dt put in there.
+ *
+ * A contact with relative displacement u, and rotations joined to it by the levers l, is bounded by
  * Cauchy and Schwarz with weights of its four ends (1, 2.5 s) m^(-1/2):
  *     |u|^2 <= (sum of weights) (sum of |part|^2/weight),
  * so that K and C are below block diagonal matrices, for element i with w = 1/m and p = w_i + (w_i
@@ -14,10 +32,6 @@
  * eigenvalues suffices. Any s > 0 is allowed, the same for all contacts; s = 1 is exact for two
  * equal spheres, limit_share is better in beds. The weights m^(-1/2) in place of 1/m keep the bound
  * near the truth where many small spheres lie on a large one.
- *
- * Pair-centred dashpots divide k and gamma by 1 + gamma dt/(2 m*), tangential 1 + 3.5 gamma dt/(2
- * m*): a larger dt is allowed the larger the dt that is put in there, so the bound holds for dt if
- * it gives at least dt with dt put in.
  *
  * Not in it: CDT rolling (a moment of bounded size: it can chatter, not blow up), sliding (below
  * the spring that it replaces), tension of bonds, F/d against k_n: the share of a per cent that
@@ -54,7 +68,7 @@ struct limit_ends {
 /* A contact as springs and dashpots. */
 struct limit_contact {
     real k_n, k_t, k_r;         /* [N/m], [N/m], [N m] */
-    real gamma_n, gamma_t, c_r; /* [N s/m], [N s/m], [N m s] */
+    real gamma_n, gamma_t, c_r; /* gamma (p + q) [N s/m], [N s/m], [N m s] */
     real stretch;               /* largest square of lever/radius, at least 1 */
 };
 
@@ -140,8 +154,14 @@ LAW real limit_r_star(struct limit_ends e)
     return e.r_j > 0 ? e.r_i * e.r_j / (e.r_i + e.r_j) : e.r_i;
 }
 
-/* delta [m], v_n: approach speed [m/s], of receding bodies without a bond 0 counts; dt [s] for the
- * pair-centred dashpots, 0: none. */
+/* gamma (p + q); centring: c. */
+LAW real limit_dashpot(real gamma, real centring)
+{
+    return gamma * r_max((real)2 / ((real)1 + centring), (real)1);
+}
+
+/* delta [m], v_n: approach speed [m/s], of receding bodies without a bond 0 counts; dt [s] of the
+ * dashpots' centring. */
 LAW struct limit_contact limit_contact_of(
     struct contact_material c, struct limit_ends e, real delta, real v_n, real dt)
 {
@@ -156,20 +176,21 @@ LAW struct limit_contact limit_contact_of(
     real per_radius = e.r_j > 0 ? (real)0.5 / r_min(e.r_i, e.r_j) : (real)1 / e.r_i;
     /* bonds that are apart; spheres that have swallowed a smaller one */
     real lever = r_max(r_abs((real)1 - delta * per_radius), (real)1);
-    real damp_n = (real)1 / ((real)1 + (real)0.5 * damper * c.gamma_n * dt * inverse_m);
-    real damp_t = (real)1 / ((real)1 + (real)1.75 * damper * c.gamma_t * dt * inverse_m);
+    real half_dt = (real)0.5 * dt * inverse_m;
+    real gamma_n = damper * c.gamma_n, gamma_t = damper * c.gamma_t;
 
     k.stretch = lever * lever;
-    k.k_n = (hertz ? (real)1.5 : (real)1) * size * c.k_n * root * damp_n;
-    k.gamma_n = damper * c.gamma_n * damp_n;
-    k.k_t = WITH_TANGENTIAL ? size * c.k_t * root * damp_t : (real)0;
-    k.gamma_t = WITH_TANGENTIAL_DAMPING ? damper * c.gamma_t * damp_t : (real)0;
+    k.k_n = (hertz ? (real)1.5 : (real)1) * size * c.k_n * root;
+    k.gamma_n = limit_dashpot(gamma_n, gamma_n * half_dt);
+    k.k_t = WITH_TANGENTIAL ? size * c.k_t * root : (real)0;
+    k.gamma_t =
+        WITH_TANGENTIAL_DAMPING ? limit_dashpot(gamma_t, (real)3.5 * gamma_t * half_dt) : (real)0;
     k.k_r = k.c_r = 0;
     if (WITH_ROLLING_EPSD) {
         real i_star =
             (real)1 / (e.w_i / (e.r_i * e.r_i) + (e.r_j > 0 ? e.w_j / (e.r_j * e.r_j) : (real)0));
         k.k_r = size * r_star * r_star * c.k_r * root;
-        k.c_r = r_star * r_sqrt(size * i_star * root) * c.c_r;
+        k.c_r = (real)2 * r_star * r_sqrt(size * i_star * root) * c.c_r;
     }
     return k;
 }

@@ -50,18 +50,21 @@ struct contact_pair {
     X(real, gamma_n)    /* [N s/m] / [N s/m^1.25] */                                               \
     X(real, centring_n) /* gamma_n dt/(2 m*) [1] / [m^-0.25] */                                    \
     X(real, damp_n)     /* linear: 1/(1 + centring_n) */                                           \
+    X(real, turning_n)  /* tangent stiffness/s times dt^2/(2 m*) [1] / [m^-0.5] */                 \
     X(real, k_t)        /* [N/m] / [N/m^1.5] */                                                    \
     X(real, gamma_t)    /* [N s/m] / [N s/m^1.25] */                                               \
     X(real, centring_t) /* 3.5 gamma_t dt/(2 m*) [1] / [m^-0.25] */                                \
     X(real, damp_t)     /* linear: 1/(1 + centring_t) */                                           \
+    X(real, turning_t)  /* 3.5 k_t dt^2/(2 m*) [1] / [m^-0.5] */                                   \
     X(real, mu)         /* [1] */                                                                  \
     X(real, f_b)        /* [N] */                                                                  \
     X(real, jkr)        /* JKR: L = (2 pi w R*^(1/2)/E*)^(2/3) [m]; 0: none */                     \
     X(real, roll_limit) /* mu_r R* [m] */                                                          \
-    X(real, roll_stop) /* CDT: 1/(dt (1/I_i + 1/I_j)) [N m s]: moment per spin to stop it in dt */ \
-    X(real, k_r)       /* EPSD: [N m] / [N m^0.5]; 0: CDT */                                       \
-    X(real, c_r)       /* EPSD: [N m s] / [N m^0.75 s] */                                          \
-    X(int, law)        /* CONTACT_ bits */
+    X(real,                                                                                        \
+        roll_stop) /* CDT: 1/(2 dt (1/I_i + 1/I_j)) [N m s]: moment per spin, halves it in dt */   \
+    X(real, k_r)   /* EPSD: [N m] / [N m^0.5]; 0: CDT */                                           \
+    X(real, c_r)   /* EPSD: [N m s] / [N m^0.75 s] */                                              \
+    X(int, law)    /* CONTACT_ bits */
 
 #define CONTACT_MEMBER(type, name) type name;
 struct contact_material {
@@ -194,12 +197,14 @@ LAW struct contact_parameters contact_parameters_of(
     p.centring_t = (real)3.5 * p.gamma_t * half_dt;
     both = (real)1 / (((real)1 + p.centring_n) * ((real)1 + p.centring_t));
     p.damp_n = both * ((real)1 + p.centring_t);
-    p.damp_t = p.centring_t > 0 ? both * ((real)1 + p.centring_n) : (real)1;
+    p.damp_t = both * ((real)1 + p.centring_n);
+    p.turning_n = (material_is_hertz(c) ? (real)1.5 : (real)1) * p.k_n * half_dt * dt;
+    p.turning_t = (real)3.5 * p.k_t * half_dt * dt;
     p.mu = c.mu;
     p.f_b = c.f_b;
     p.jkr = WITH_JKR ? c.jkr * r_cube_root(s.r_star) : (real)0;
     p.roll_limit = c.mu_r * s.r_star;
-    p.roll_stop = (real)0.4 * s.i_star / dt;
+    p.roll_stop = (real)0.2 * s.i_star / dt;
     p.k_r = size * s.r_star * s.r_star * c.k_r;
     p.c_r = s.r_star * r_sqrt(size * s.i_star) * c.c_r;
     p.law = c.law;

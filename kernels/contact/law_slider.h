@@ -2,8 +2,17 @@
  * resistance are both of this kind.
  *
  * Trial, then slip: T = -k x. |T| <= cap: the force is T with the dashpot, shortened to the cap.
- * |T| > cap: the force is the cap along T, without dashpot, and the spring is cut to it, so that it
- * never holds more than cap^2/(2 k). One square root, one division.
+ * |T| > cap: the force is the cap, without dashpot, and the spring is cut to it, so that it never
+ * holds more than cap^2/(2 k). At rest the dashpot has no part, so T is the force itself, and the
+ * contact holds any load up to the cap. The force is continuous where slip begins (the cap on both
+ * sides) and, with the dashpot, where it ends (its velocity is zero there).
+ *
+ * The slip goes along the mean force of the step: with B the spring's force before this step's way,
+ *     F = T - a (B + F), |F| = cap  =>  F = (T - a B)/(1 + a),
+ *     a = (T^2 - cap^2)/(T.B + cap^2 + ((T.B + cap^2)^2 - (B^2 - cap^2)(T^2 - cap^2))^(1/2)),
+ * the midpoint rule of plasticity (Ortiz and Popov 1985, Int. J. Numer. Methods Eng. 21, 1561). The
+ * way back along T alone is of first order where the direction of sliding turns. A step that turns
+ * the force round (no such a) goes back along T. The loss, a k (B + F)^2/(2 k^2), is not negative.
  *
  * The spring lies in the tangent plane and turns with it. For x perpendicular to n_old the rotation
  * of n_old into n is
@@ -71,30 +80,37 @@ LAW vec3 slider_trial(vec3 spring, vec3 rate, struct slider_carry c, vec3 n)
     return v3_fma(-v3_dot(n, x), c.turn, x);
 }
 
-/* trial: from slider_trial; k: stiffness; dashpot: its force, zero where there is none (damped =
- * 0); damp: 1/(1 + gamma dt/(2 m)), which brings the dashpot from the half step to t^{n+1}; cap >=
- * 0: largest force. */
-LAW struct slider slider_slip(vec3 trial, real k, int damped, vec3 dashpot, real damp, real cap)
+/* trial: from slider_trial; before: the same without the way of this step; k: stiffness; dashpot:
+ * its force at t^{n+1}, zero where there is none (damped = 0); cap >= 0: largest force. */
+LAW struct slider slider_slip(vec3 trial, vec3 before, real k, int damped, vec3 dashpot, real cap)
 {
     struct slider r;
-    vec3 u = v3_scale(-k, trial);
+    vec3 u = v3_scale(-k, trial), b = v3_scale(-k, before);
     real limit = cap * cap;
     real square = v3_dot(u, u);
     int slips = square > limit;
     int shorten = slips;
     real scale;
+    /* the way back */
+    real excess = square - limit, along = v3_dot(u, b) + limit;
+    real root = along * along - (v3_dot(b, b) - limit) * excess;
+    int turns = slips && along > 0 && root > 0;
+    real a = turns ? excess / (along + r_sqrt(root)) : (real)0;
+    u = v3_fma(-a, b, u);
+    square = turns ? v3_dot(u, u) : square;
 
     if (damped) {
-        u.x = slips ? u.x : damp * (u.x + dashpot.x);
-        u.y = slips ? u.y : damp * (u.y + dashpot.y);
-        u.z = slips ? u.z : damp * (u.z + dashpot.z);
+        u.x = slips ? u.x : u.x + dashpot.x;
+        u.y = slips ? u.y : u.y + dashpot.y;
+        u.z = slips ? u.z : u.z + dashpot.z;
         square = v3_dot(u, u);
         shorten = square > limit;
     }
     scale = shorten ? cap / r_sqrt(square) : (real)1;
     r.force = v3_scale(scale, u);
-    r.spring = v3(slips ? scale * trial.x : trial.x, slips ? scale * trial.y : trial.y,
-        slips ? scale * trial.z : trial.z);
+    vec3 x = v3_fma(-a, before, trial);
+    r.spring = v3(slips ? scale * x.x : trial.x, slips ? scale * x.y : trial.y,
+        slips ? scale * x.z : trial.z);
     r.slips = slips;
     return r;
 }

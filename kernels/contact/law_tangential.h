@@ -4,9 +4,9 @@
  * k_t = k_t s, gamma_t = gamma_t s^(1/2), s = 1 (linear) or delta^(1/2) (Mindlin's 8 G* (R*
  * delta)^(1/2)); see law_slider.h for how the spring turns, slips and keeps its energy. Second
  * order in dt: v_t of the half step in all its parts, the first step of a contact counted only from
- * the touch, and a pair-centred dashpot: the relative acceleration of the two surfaces is F_t (1/m*
- * + l_i^2/I_i + l_j^2/I_j) = 3.5 F_t/m* for spheres, so v_t^{n+1} = v_t + 3.5 F_t dt/(2 m*), solved
- * for F_t. */
+ * the touch, and a dashpot on the predicted velocity of t^{n+1} as in law_normal.h: the relative
+ * acceleration of the two surfaces is F_t (1/m* + l_i^2/I_i + l_j^2/I_j) = 3.5 F_t/m* for spheres,
+ * so 3.5/m* takes the place of 1/m*. */
 #ifndef DEMOCLES_LAW_TANGENTIAL_H
 #define DEMOCLES_LAW_TANGENTIAL_H
 
@@ -21,12 +21,15 @@ LAW real tangential_cap(real force_n, int bonded, struct contact_parameters p)
 }
 
 /* trial: the spring carried to t^{n+1}, zero where there is no contact. */
-LAW struct slider tangential_force(
-    vec3 trial, vec3 v_t_end, real cap, struct normal_factors f, struct contact_parameters p)
+LAW struct slider tangential_force(vec3 trial, vec3 before, struct contact_kinematics k, real cap,
+    struct normal_factors f, struct contact_parameters p)
 {
     vec3 dashpot = v3(0, 0, 0);
-    if (WITH_TANGENTIAL_DAMPING) dashpot = v3_scale(-(p.gamma_t * f.damper), v_t_end);
-    return slider_slip(trial, p.k_t * f.spring, WITH_TANGENTIAL_DAMPING, dashpot, f.damp_t, cap);
+    if (WITH_TANGENTIAL_DAMPING) {
+        vec3 predicted = v3_fma(f.gain_t, k.kick_t, v3_scale(f.keep_t, k.v_t_end));
+        dashpot = v3_scale(-(p.gamma_t * f.damper), predicted);
+    }
+    return slider_slip(trial, before, p.k_t * f.spring, WITH_TANGENTIAL_DAMPING, dashpot, cap);
 }
 
 #endif

@@ -13,7 +13,9 @@
  * lint: WITH_WALL_ROTATION requires WITH_SPIN
  * lint: WITH_PAIR_ROLLING requires WITH_PAIR_ROTATION
  * lint: WITH_WALL_ROTATION requires WITH_WALLS
- * lint: WITH_ORIENTATION requires WITH_SPIN */
+ * lint: WITH_ORIENTATION requires WITH_SPIN
+ * lint: WITH_SPIN_KICK requires WITH_SPIN
+ * lint: WITH_SPIN_KICK requires WITH_KICK */
 #include "common/flags.h"
 #include "incidence.h"
 #include "integrate.h"
@@ -82,15 +84,19 @@ __kernel __attribute__((reqd_work_group_size(64, 1, 1))) void gather(int n_owned
     real radius = (real)x.s3, inverse_m = v.s3;
 #endif
     (void)radius; /* unless something rotates */
-    v = kick(v, f, inverse_m, g, half_dt);
-    if (!observe) v = kick(v, f, inverse_m, g, half_dt);
+    real4 kick = half_kick(f, inverse_m, g, half_dt);
+    v += kick;
+    if (!observe) v += kick;
     STORE_VELOCITY(e, v);
+    if (WITH_KICK) STORE_KICK(e, kick);
 #if WITH_SPIN
     real4 w = LOAD_SPIN(e);
     if (WITH_PAIR_ROTATION || WITH_WALL_ROTATION) {
-        w = kick_spin(w, t, inverse_m, radius, half_dt);
-        if (!observe) w = kick_spin(w, t, inverse_m, radius, half_dt);
+        real4 spun = half_spin(t, inverse_m, radius, half_dt);
+        w += spun;
+        if (!observe) w += spun;
         STORE_SPIN(e, w);
+        if (WITH_SPIN_KICK) STORE_SPIN_KICK(e, spun);
     }
 #endif
     if (observe) {
@@ -132,13 +138,18 @@ __kernel __attribute__((reqd_work_group_size(64, 1, 1))) void kick_drift(int n_o
     real radius = (real)x.s3, inverse_m = v.s3;
 #endif
     (void)radius; /* unless something rotates */
-    v = kick(v, vload4(e, force), inverse_m, (real4)(gravity_x, gravity_y, gravity_z, 0), half_dt);
+    real4 kick = half_kick(
+        vload4(e, force), inverse_m, (real4)(gravity_x, gravity_y, gravity_z, 0), half_dt);
+    v += kick;
     STORE_VELOCITY(e, v);
+    if (WITH_KICK) STORE_KICK(e, kick);
 #if WITH_SPIN
     real4 w = LOAD_SPIN(e);
     if (WITH_PAIR_ROTATION || WITH_WALL_ROTATION) {
-        w = kick_spin(w, vload4(e, torque), inverse_m, radius, half_dt);
+        real4 spun = half_spin(vload4(e, torque), inverse_m, radius, half_dt);
+        w += spun;
         STORE_SPIN(e, w);
+        if (WITH_SPIN_KICK) STORE_SPIN_KICK(e, spun);
     }
 #endif
     x = drift(x, v, dt);

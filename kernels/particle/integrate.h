@@ -3,8 +3,8 @@
  *
  *   kick   v <- v + (dt/2) (F/m + g),  w <- w + (dt/2) tau/I,  I = 0.4 m r^2 of a sphere
  *   drift  x <- x + dt v
- * Lane 3 of every vector carries something else (radius, 1/m, material) and passes through
- * untouched. */
+ * Lane 3 of every vector carries something else (radius, 1/m, material), of a kick 0, and passes
+ * through untouched. */
 #ifndef DEMOCLES_INTEGRATE_H
 #define DEMOCLES_INTEGRATE_H
 
@@ -16,20 +16,21 @@
 #define TO_PREAL4(v) convert_double4(v)
 #endif
 
-LAW real4 kick(real4 v, real4 force, real inverse_m, real4 gravity, real half_dt)
+/* What half a step adds to v. */
+LAW real4 half_kick(real4 force, real inverse_m, real4 gravity, real half_dt)
 {
     real4 a = fma(force, (real4)inverse_m, gravity);
     a.s3 = 0;
-    return fma((real4)half_dt, a, v);
+    return half_dt * a;
 }
 
-/* inverse_m / (0.4 r^2) = 1/I */
-LAW real4 kick_spin(real4 w, real4 torque, real inverse_m, real radius, real half_dt)
+/* And to w; inverse_m / (0.4 r^2) = 1/I */
+LAW real4 half_spin(real4 torque, real inverse_m, real radius, real half_dt)
 {
     real inverse_inertia = (real)2.5 * inverse_m / (radius * radius);
     real4 a = inverse_inertia * torque;
     a.s3 = 0;
-    return fma((real4)half_dt, a, w);
+    return half_dt * a;
 }
 
 LAW preal4 drift(preal4 x, real4 v, preal dt)

@@ -11,17 +11,25 @@
  * lint: WITH_ROLLING_CDT requires WITH_SPIN
  * lint: WITH_ROLLING_EPSD requires WITH_SPIN
  * lint: WITH_MATERIALS requires WITH_SPIN
+ * lint: WITH_SPIN_KICK requires WITH_SPIN
+ * lint: WITH_SPIN_KICK requires WITH_KICK
+ * lint: WITH_TANGENTIAL_DAMPING requires WITH_SPIN_KICK
+ * lint: WITH_ROLLING_CDT requires WITH_SPIN_KICK
+ * lint: WITH_ROLLING_EPSD requires WITH_SPIN_KICK
  * lint: some of WITH_LINEAR WITH_HERTZ */
 #include "element.h"
 #include "contact/contact_memory.h"
 
 /* Rows of local memory: what the law needs of both elements; the results take their place. */
-#define L_U 0
-/* of equal spheres that do not roll: w_i + w_j */
-#define L_WI 3
-#define L_WJ 6
 #define BOTH_SPINS (WITH_SIZES || WITH_ROLLING)
-#define L_SIZE (WITH_ROTATION ? (BOTH_SPINS ? 9 : 6) : 3) /* r_i r_j 1/m_i 1/m_j */
+#define SPINS (BOTH_SPINS ? 6 : 3)
+#define SPIN_KICKS (WITH_TANGENTIAL_DAMPING || WITH_ROLLING)
+#define L_U 0
+#define L_KICK 3
+/* of equal spheres that do not roll: w_i + w_j */
+#define L_W (WITH_KICK ? 6 : 3)
+#define L_SPUN (L_W + (WITH_ROTATION ? SPINS : 0))
+#define L_SIZE (L_SPUN + (SPIN_KICKS ? SPINS : 0)) /* r_i r_j 1/m_i 1/m_j */
 #define L_KIND (L_SIZE + (WITH_SIZES ? 4 : 0))
 #define L_ROWS (L_KIND + (WITH_MATERIALS ? 1 : 0))
 #define RESULT_ROWS (WITH_ROLLING ? 9 : WITH_ROTATION ? (WITH_SIZES ? 8 : 6) : 3)
@@ -43,6 +51,14 @@
 #define RADIUS(k) radius
 #endif
 
+/* Two spins, or their sum, to the rows from `row` on. */
+LAW void pair_keep_spins(real4 wi, real4 wj, int row, __local real *loc, size_t l)
+{
+    if (!BOTH_SPINS) wi += wj;
+    ROW3_STORE(loc, row, l, wi.s0, wi.s1, wi.s2);
+    if (BOTH_SPINS) { ROW3_STORE(loc, row + 3, l, wj.s0, wj.s1, wj.s2); }
+}
+
 /* Differences of positions and velocities, spins, and what sizes and materials there are. */
 LAW void pair_load(int i, int j, __global const preal *position, __global const real *motion,
     real n_material, __local preal *distance, __local real *loc, size_t l)
@@ -52,14 +68,19 @@ LAW void pair_load(int i, int j, __global const preal *position, __global const 
     (void)n_material;
     ROW3_STORE(distance, 0, l, x.s0, x.s1, x.s2);
     ROW3_STORE(loc, L_U, l, u.s0, u.s1, u.s2);
+#if WITH_KICK
+    real4 kick = LOAD_KICK(i) - LOAD_KICK(j);
+    ROW3_STORE(loc, L_KICK, l, kick.s0, kick.s1, kick.s2);
+#endif
 #if WITH_SPIN
     if (WITH_ROTATION || WITH_MATERIALS) {
         real4 wi = LOAD_SPIN(i), wj = LOAD_SPIN(j);
         if (WITH_MATERIALS) LOC(L_KIND) = wi.s3 * n_material + wj.s3;
-        if (!BOTH_SPINS) wi += wj;
-        if (WITH_ROTATION) { ROW3_STORE(loc, L_WI, l, wi.s0, wi.s1, wi.s2); }
-        if (WITH_ROTATION && BOTH_SPINS) { ROW3_STORE(loc, L_WJ, l, wj.s0, wj.s1, wj.s2); }
+        if (WITH_ROTATION) pair_keep_spins(wi, wj, L_W, loc, l);
     }
+#endif
+#if WITH_SPIN_KICK
+    if (SPIN_KICKS) pair_keep_spins(LOAD_SPIN_KICK(i), LOAD_SPIN_KICK(j), L_SPUN, loc, l);
 #endif
     if (WITH_SIZES) {
         LOC(L_SIZE) = (real)xi.s3;
@@ -67,6 +88,18 @@ LAW void pair_load(int i, int j, __global const preal *position, __global const 
         LOC(L_SIZE + 2) = vi.s3;
         LOC(L_SIZE + 3) = vj.s3;
     }
+}
+
+LAW struct kinematics_motion pair_motion(__local const real *loc, size_t l)
+{
+    vec3 zero = v3(0, 0, 0);
+    struct kinematics_motion m = kinematics_free(ROW3_LOAD(v3, loc, L_U, l), zero, zero, zero);
+    if (WITH_KICK) m.kick = ROW3_LOAD(v3, loc, L_KICK, l);
+    if (WITH_ROTATION) m.w_i = ROW3_LOAD(v3, loc, L_W, l);
+    if (WITH_ROTATION && BOTH_SPINS) m.w_j = ROW3_LOAD(v3, loc, L_W + 3, l);
+    if (SPIN_KICKS) m.spun_i = ROW3_LOAD(v3, loc, L_SPUN, l);
+    if (SPIN_KICKS && BOTH_SPINS) m.spun_j = ROW3_LOAD(v3, loc, L_SPUN + 3, l);
+    return m;
 }
 
 /* Force; torques, or couple and levers: see RESULT_WIDTH. */
@@ -135,15 +168,12 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void pair_forc
     BATCH_VECTOR
     FOR_BATCH (l, n) {
         pvec3 D = ROW3_LOAD(p3, distance, 0, l);
-        vec3 u = ROW3_LOAD(v3, loc, L_U, l), zero = v3(0, 0, 0), wi = zero, wj = zero;
 #if WITH_PERIODIC
         D = nearest_images(D, period_x, period_y, period_z);
 #endif
-        if (WITH_ROTATION) wi = ROW3_LOAD(v3, loc, L_WI, l);
-        if (WITH_ROTATION && BOTH_SPINS) wj = ROW3_LOAD(v3, loc, L_WJ, l);
         struct contact_parameters p = PARAMETERS;
         struct contact_kinematics k =
-            contact_kinematics_pair(D, u, zero, wi, wj, RADIUS(0), RADIUS(1), dt);
+            contact_kinematics_pair(D, pair_motion(loc, l), RADIUS(0), RADIUS(1), dt);
         struct contact_history h = HISTORY_LOAD(base, planes, l);
         struct contact_result r = contact_law(k, p, dt, &h);
         HISTORY_STORE(h, base, planes, l);

@@ -17,9 +17,9 @@
 #define GRID_REALS 7
 #define GRID_INTS 4
 
-/* A wall's pose in preal: rotation 9 (rows), translation 3, velocity 3, spin 3, centre 3,
- * active. */
-#define POSE_WIDTH 22
+/* A wall's pose in preal: rotation 9 (rows), translation 3; velocity 3, spin 3, centre 3 of the
+ * half step; active; velocity 3, spin 3, centre 3 of the step itself. */
+#define POSE_WIDTH 31
 /* Real of a wall contact's result: force, and torque where something rotates, padded to fours. */
 #define WALL_RESULT_WIDTH(with_rotation) ((with_rotation) ? 8 : 4)
 

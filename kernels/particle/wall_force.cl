@@ -11,6 +11,11 @@
  * lint: WITH_ROLLING_EPSD requires WITH_SPIN
  * lint: WITH_MATERIALS requires WITH_TABLE
  * lint: WITH_MATERIALS requires WITH_SPIN
+ * lint: WITH_SPIN_KICK requires WITH_SPIN
+ * lint: WITH_SPIN_KICK requires WITH_KICK
+ * lint: WITH_TANGENTIAL_DAMPING requires WITH_SPIN_KICK
+ * lint: WITH_ROLLING_CDT requires WITH_SPIN_KICK
+ * lint: WITH_ROLLING_EPSD requires WITH_SPIN_KICK
  * lint: some of WITH_LINEAR WITH_HERTZ */
 #include "element.h"
 #include "contact/contact_memory.h"
@@ -18,9 +23,12 @@
 #include "wall_geometry.h"
 
 /* Rows of local memory: real, then preal; results take the place of the former. */
+#define SPIN_KICKS (WITH_TANGENTIAL_DAMPING || WITH_ROLLING)
 #define L_V 0
-#define L_W 3
-#define L_MASS (WITH_ROTATION ? 6 : 3)         /* 1/m */
+#define L_KICK 3
+#define L_W (WITH_KICK ? 6 : 3)
+#define L_SPUN (L_W + (WITH_ROTATION ? 3 : 0))
+#define L_MASS (L_SPUN + (SPIN_KICKS ? 3 : 0)) /* 1/m */
 #define L_KIND (L_MASS + (WITH_SIZES ? 1 : 0)) /* row of the table */
 #define L_ROWS (L_KIND + (WITH_TABLE ? 1 : 0))
 #define ROWS (L_ROWS > 6 ? L_ROWS : 6)
@@ -62,12 +70,33 @@ LAW void wall_load(int e, __global const preal *row, __global const preal *posit
     ROW3_STORE(place, P_PRIMITIVE + 9, l, c.s1, c.s2, c.s3);
     ROW3_STORE(loc, L_V, l, v.s0, v.s1, v.s2);
     if (WITH_SIZES) LOC(L_MASS) = v.s3;
+#if WITH_KICK
+    real4 kick = LOAD_KICK(e);
+    ROW3_STORE(loc, L_KICK, l, kick.s0, kick.s1, kick.s2);
+#endif
 #if WITH_SPIN
     if (WITH_ROTATION) {
         real4 w = LOAD_SPIN(e);
         ROW3_STORE(loc, L_W, l, w.s0, w.s1, w.s2);
     }
 #endif
+#if WITH_SPIN_KICK
+    if (SPIN_KICKS) {
+        real4 spun = LOAD_SPIN_KICK(e);
+        ROW3_STORE(loc, L_SPUN, l, spun.s0, spun.s1, spun.s2);
+    }
+#endif
+}
+
+/* Relative to the wall point. */
+LAW struct kinematics_motion wall_motion(struct wall_geometry g, __local const real *loc, size_t l)
+{
+    vec3 zero = v3(0, 0, 0);
+    struct kinematics_motion m = kinematics_free(ROW3_LOAD(v3, loc, L_V, l), g.v, zero, zero);
+    if (WITH_KICK) m.kick = v3_sub(ROW3_LOAD(v3, loc, L_KICK, l), g.kick);
+    if (WITH_ROTATION) m.w_i = ROW3_LOAD(v3, loc, L_W, l);
+    if (SPIN_KICKS) m.spun_i = ROW3_LOAD(v3, loc, L_SPUN, l);
+    return m;
 }
 
 LAW struct wall_primitive wall_stored(__local const preal *place, size_t l)
@@ -130,8 +159,7 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void wall_forc
     BATCH_VECTOR
     FOR_BATCH (l, n) {
         real radius = (real)PLACE(P_RADIUS);
-        vec3 v = ROW3_LOAD(v3, loc, L_V, l), w = v3(0, 0, 0);
-        if (WITH_ROTATION) w = ROW3_LOAD(v3, loc, L_W, l);
+        vec3 v = ROW3_LOAD(v3, loc, L_V, l);
         struct wall_geometry g = GEOMETRY(wall_stored(place, l), ROW3_LOAD(p3, place, P_X, l), v);
         struct contact_parameters p = PARAMETERS;
         struct contact_history h = HISTORY_LOAD(base, planes, l);
@@ -140,8 +168,9 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void wall_forc
         g.distance = counts ? g.distance : (preal)2 * (preal)radius;
         h.state = counts ? h.state : 0;
 #endif
-        struct contact_kinematics k = contact_kinematics_wall(g.n, g.n_half,
-            radius - (real)g.distance, radius - (real)g.distance_half, v, g.v, w, radius);
+        struct contact_kinematics k =
+            contact_kinematics_wall(g.n, g.n_half, radius - (real)g.distance,
+                radius - (real)g.distance_half, wall_motion(g, loc, l), radius);
         struct contact_result r = contact_law(k, p, dt, &h);
         HISTORY_STORE(h, base, planes, l);
         LEDGER_ADD(r, base, planes, l);

@@ -10,7 +10,8 @@ struct wall_geometry {
     /* unit vectors from the centre to the wall, at t^{n+1} and at the half step */
     vec3 n, n_half;
     preal distance, distance_half; /* [m] */
-    vec3 v;                        /* velocity of the wall point [m/s] */
+    vec3 v;                        /* velocity of the wall point, at the half step [m/s] */
+    vec3 kick;                     /* what it gains until t^{n+1} [m/s] */
 };
 
 /* Closest point in the middle of the step, when the centre was at x - u dt/2. The distance to a
@@ -38,6 +39,7 @@ LAW struct wall_geometry wall_geometry_of(
     g.distance = now.distance;
     g.distance_half = half_way.distance;
     g.v = v;
+    g.kick = v3(0, 0, 0);
     return g;
 }
 
@@ -54,8 +56,8 @@ LAW struct wall_geometry wall_geometry(struct wall_primitive w, pvec3 x, vec3 v,
  * step: a point that is at y then goes with V + W x (y - c), and is half a step's way further on at
  * the end. So the place that the centre had in the middle is carried along with the wall, looked at
  * in the pose of now, and the normal turned back by half the wall's turn. The wall's velocity is
- * that at the contact in the middle of the
- * step: a wall that turns in itself has none along the normal. */
+ * that at the contact in the middle of the step: a wall that turns in itself has none along the
+ * normal. Until t^{n+1} it goes over into the true velocity of then, at the contact of then. */
 LAW struct wall_geometry wall_geometry_moving(
     struct wall_primitive w, pvec3 x, vec3 v, __global const preal *pose, real dt)
 {
@@ -76,6 +78,13 @@ LAW struct wall_geometry wall_geometry_moving(
     struct wall_geometry g = wall_geometry_of(now, half_way, velocity);
     g.n_half = v3_fma((real)-0.5 * dt, v3_cross(spin, g.n_half), g.n_half);
     g.v = wall_velocity(velocity, spin, v3_fma((real)g.distance_half, g.n_half, arm));
+    if (WITH_KICK) {
+        vec3 arm_end = v3_of_p3(p3_sub(x, p3(pose[28], pose[29], pose[30])));
+        vec3 end = wall_velocity(v3((real)pose[22], (real)pose[23], (real)pose[24]),
+            v3((real)pose[25], (real)pose[26], (real)pose[27]),
+            v3_fma((real)g.distance, g.n, arm_end));
+        g.kick = v3_sub(end, g.v);
+    }
     return g;
 }
 #endif

@@ -1,9 +1,8 @@
 /* Wall candidates of each owned element: the primitives within reach, in ascending order; which
  * triangle contacts count; histories from the lists before.
  *
- * pose [n_wall][POSE_WIDTH] preal of the step: rotation (9, rows), translation (3), velocity (3),
- * spin (3), centre (3), active. room [n_wall]: how far the wall may move until the next build [m],
- * negative for walls that are not there. */
+ * pose [n_wall][POSE_WIDTH] preal of the step: as particle_words.h says. room [n_wall]: how far the
+ * wall may move until the next build [m], negative for walls that are not there. */
 #include "element.h"
 #include "remember.h"
 #include "contact/law_wall.h"

@@ -27,8 +27,8 @@ double check_element_bytes(const struct features *features)
 {
     /* [byte] */
     size_t real_bytes = particles_real(features), preal_bytes = particles_preal(features);
-    size_t carried = 4 * preal_bytes + (features->spin ? 8 : 4) * real_bytes + sizeof(cl_long) +
-                     (features->orientation ? 4 * real_bytes : 0);
+    size_t carried =
+        particles_record(features) + sizeof(cl_long) + (features->orientation ? 4 * real_bytes : 0);
     size_t own = 5 * preal_bytes + (features->spin ? 8 : 4) * real_bytes;
     /* pairs, twice; interior, boundary; cells and their members; owners and ghosts; neighbours as
      * found */

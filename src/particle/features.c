@@ -22,6 +22,7 @@ static void add_contact(
     contact_table_material(scene, contact->between[0], contact->between[1], row);
     struct contact_material c = material_load(row);
     law->any = true;
+    law->damped |= c.gamma_n > 0;
 #define ADD(member, flag, needed) law->member |= (needed) != 0;
     CONTACT_FEATURES(ADD)
 #undef ADD
@@ -52,9 +53,14 @@ static void element_features(
     }
 }
 
+static bool rolls(const struct law_features *law)
+{
+    return law->rolling_cdt || law->rolling_epsd;
+}
+
 static bool rotates(const struct law_features *law)
 {
-    return law->tangential || law->rolling_cdt || law->rolling_epsd;
+    return law->tangential || rolls(law);
 }
 
 struct features features_of(
@@ -98,7 +104,11 @@ struct features features_of(
     f.orientation = is_wanted(scene, "orientation");
     f.spin |= f.materials || f.orientation || is_wanted(scene, "angular_velocity");
     const struct law_features *law[2] = {&f.pair, &f.wall};
-    for (int k = 0; k < 2; k++) f.spin |= rotates(law[k]);
+    for (int k = 0; k < 2; k++) {
+        f.spin |= rotates(law[k]);
+        f.spin_kick |= law[k]->tangential_damping || rolls(law[k]);
+        f.kick |= law[k]->damped || f.spin_kick;
+    }
     for (int a = 0; a < 3; a++) f.periodic[a] = scene->domain.periodic[a];
     f.remove_outside = scene->domain.remove_outside;
     return f;
@@ -122,6 +132,8 @@ const struct feature_row features_table[] = {
     ROW(materials, "WITH_MATERIALS"),
     ROW(wall_table, "WITH_TABLE"),
     {"energy", "WITH_ENERGY", offsetof(struct features, energy), FEATURES_PAIR | FEATURES_WALL},
+    ROW(kick, "WITH_KICK"),
+    ROW(spin_kick, "WITH_SPIN_KICK"),
     ROW(orientation, "WITH_ORIENTATION"),
     AXIS_ROW("periodic_x", 0, "WITH_PERIODIC_X"),
     AXIS_ROW("periodic_y", 1, "WITH_PERIODIC_Y"),
@@ -145,7 +157,7 @@ char *features_options(const struct features *f, enum features_program program)
     char *rows = feature_table_options(features_table, f, program);
     char *text = fail_format("%s -DWITH_PAIR_ROTATION=%d -DWITH_PAIR_ROLLING=%d "
                              "-DWITH_WALL_ROTATION=%d",
-        rows, rotates(&f->pair), f->pair.rolling_cdt || f->pair.rolling_epsd, rotates(&f->wall));
+        rows, rotates(&f->pair), rolls(&f->pair), rotates(&f->wall));
     free(rows);
     return text;
 }

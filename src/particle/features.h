@@ -14,7 +14,8 @@
 /* Parts of the contact laws, once for pairs of elements and once for elements at walls. */
 #define LAW_FEATURE(member, flag, needed) bool member;
 struct law_features {
-    bool any; /* there is such a contact at all */
+    bool any;    /* there is such a contact at all */
+    bool damped; /* and it has a dashpot along the normal */
     CONTACT_FEATURES(LAW_FEATURE)
 };
 
@@ -25,6 +26,8 @@ struct features {
     bool materials;  /* more than one element material */
     bool wall_table; /* elements at walls: more than one pair of materials */
     bool energy;     /* losses of contacts are accounted for */
+    bool kick;       /* some contact has a dashpot, which predicts velocities */
+    bool spin_kick;  /* and angular velocities */
     bool orientation;
     bool periodic[3];
     bool walls, plane, rectangle, cylinder, triangle;

@@ -33,9 +33,10 @@ static struct program *build(
     return program;
 }
 
-/* Number arguments of a force kernel, or the table of all pairs of materials. */
-static void set_parameters(
-    struct sim *s, struct launch *launch, struct buffer *buffer, bool wall, bool by_table)
+/* Number arguments of a force kernel for steps of dt [s], or the table of all pairs of
+ * materials. */
+static void set_parameters(struct sim *s, struct launch *launch, struct buffer *buffer, bool wall,
+    bool by_table, double dt)
 {
     struct particle_run *run = s->particle;
     int n = s->scene->n_material, n_row = by_table ? n * n : 1;
@@ -48,7 +49,7 @@ static void set_parameters(
     for (int k = 0; k < n_row; k++) {
         int a = by_table ? k / n : run->first->material[0], b = by_table ? k % n : first_b;
         if (run->features.sizes) contact_table_material(s->scene, a, b, row + k * width);
-        else contact_table_parameters(s->scene, a, b, wall, r, m, s->dt, row + k * width);
+        else contact_table_parameters(s->scene, a, b, wall, r, m, dt, row + k * width);
     }
     if (launch_has(launch, "table")) {
         reals_put(buffer, run->features.real_is_float, (size_t)n_row * (size_t)width, row);
@@ -58,7 +59,17 @@ static void set_parameters(
     }
     launch_set_int_if(launch, "n_material", n);
     launch_set_real_if(launch, "radius", r);
+    launch_set_real(launch, "dt", dt);
     free(row);
+}
+
+/* Steps of dt [s] for the laws. */
+static void set_step(struct sim *s, double dt)
+{
+    struct particle_run *run = s->particle;
+    set_parameters(s, run->pair_force, &run->table_pair, false, run->features.materials, dt);
+    if (run->wall_force)
+        set_parameters(s, run->wall_force, &run->table_wall, true, run->features.wall_table, dt);
 }
 
 static void set_motion(struct sim *s, struct launch *launch)
@@ -92,12 +103,8 @@ static void create_kernels(struct sim *s)
     run->kick_drift = launch_create(run->program_body, "kick_drift");
     buffer_init(&run->table_pair, s->dev, "pair table");
     buffer_init(&run->table_wall, s->dev, "wall table");
-    set_parameters(s, run->pair_force, &run->table_pair, false, run->features.materials);
-    if (run->wall_force)
-        set_parameters(s, run->wall_force, &run->table_wall, true, run->features.wall_table);
+    set_step(s, s->dt);
     launch_set_vector_if(run->pair_force, "period", run->period);
-    launch_set_real(run->pair_force, "dt", s->dt);
-    if (run->wall_force) launch_set_real(run->wall_force, "dt", s->dt);
     set_motion(s, run->gather);
     set_motion(s, run->kick_drift);
 }
@@ -122,12 +129,10 @@ static void distribute(struct sim *s)
 static void first_forces(struct sim *s)
 {
     struct particle_run *run = s->particle;
-    launch_set_real(run->pair_force, "dt", 1e-9 * s->dt);
-    if (run->wall_force) launch_set_real(run->wall_force, "dt", 1e-9 * s->dt);
+    set_step(s, 1e-9 * s->dt);
     launch_set_real(run->gather, "half_dt", 0);
     particle_advance(s, true);
-    launch_set_real(run->pair_force, "dt", s->dt);
-    if (run->wall_force) launch_set_real(run->wall_force, "dt", s->dt);
+    set_step(s, s->dt);
     launch_set_real(run->gather, "half_dt", 0.5 * s->dt);
 }
 

@@ -20,16 +20,11 @@ static const struct buffer_spec other_buffers[] = {
     {"torque", offsetof(struct particles, torque)}, {"flags", offsetof(struct particles, flags)},
     {0}};
 
-static size_t state_bytes(const struct features *f)
-{
-    return 4 * particles_preal(f) + (f->spin ? 8 : 4) * particles_real(f);
-}
-
 struct particles *particles_create(
     struct device *dev, const struct features *features, const struct program *lists)
 {
     struct particles *p = fail_alloc(sizeof *p);
-    p->field[FIELD_STATE].bytes = state_bytes(features);
+    p->field[FIELD_STATE].bytes = particles_record(features);
     p->field[FIELD_GID].bytes = sizeof(int64_t);
     p->field[FIELD_ORIENTATION].bytes = features->orientation ? 4 * particles_real(features) : 0;
     buffers_create(dev, p, field_buffers);
@@ -114,13 +109,14 @@ void particles_swap(struct particles *p)
     }
 }
 
-/* One element's record, as kernels/particle/element.h reads it. */
+/* One element's record, as kernels/particle/element.h reads it; its kicks are still to come. */
 static void write_record(
     char *record, const struct features *f, const struct particles_host *h, int64_t i)
 {
     const double *x = h->x + 3 * i, *v = h->v + 3 * i, *w = h->w + 3 * i;
     double head[4] = {x[0], x[1], x[2], h->radius[i]},
            tail[8] = {v[0], v[1], v[2], 1 / h->mass[i], w[0], w[1], w[2], h->material[i]};
+    memset(record, 0, particles_record(f));
     for (size_t k = 0; k < 4; k++) reals_set(record, f->position_is_float, k, head[k]);
     record += 4 * particles_preal(f);
     for (size_t k = 0; k < (f->spin ? 8 : 4); k++) reals_set(record, f->real_is_float, k, tail[k]);
@@ -129,7 +125,7 @@ static void write_record(
 void particles_write_state(
     struct particles *p, const struct features *f, const struct particles_host *h)
 {
-    size_t bytes = state_bytes(f);
+    size_t bytes = particles_record(f);
     char *state = fail_alloc((size_t)h->n * bytes);
     for (int64_t i = 0; i < h->n; i++) write_record(state + (size_t)i * bytes, f, h, i);
     buffer_write(&p->field[FIELD_STATE].now, 0, (size_t)h->n * bytes, state);
@@ -196,7 +192,7 @@ void particles_take(struct particles *p, const struct features *features,
 struct particles_host *particles_download(const struct particles *p, const struct features *f,
     const struct scene *scene, const struct elements_host *first)
 {
-    size_t n = (size_t)p->n_owned, bytes = state_bytes(f);
+    size_t n = (size_t)p->n_owned, bytes = particles_record(f);
     struct particles_host *h = particles_host_create(p->n_owned);
     char *state = fail_alloc(n * bytes);
     buffer_read(&p->field[FIELD_STATE].now, 0, n * bytes, state);

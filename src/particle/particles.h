@@ -40,6 +40,13 @@ static inline size_t particles_preal(const struct features *f)
     return reals_size(f->position_is_float);
 }
 
+/* Of a record of FIELD_STATE, as kernels/particle/element.h has it. */
+static inline size_t particles_record(const struct features *f)
+{
+    size_t floats = 4 * ((size_t)f->kick + (size_t)f->spin_kick);
+    return 4 * particles_preal(f) + (f->spin ? 8 : 4) * particles_real(f) + floats * sizeof(float);
+}
+
 /* `lists`: program with records.cl. */
 struct particles *particles_create(
     struct device *dev, const struct features *features, const struct program *lists);

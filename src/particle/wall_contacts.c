@@ -119,6 +119,9 @@ static void new_batch(struct wall_contacts *w, int64_t step, bool upload)
         memcpy(r + 15, p->spin, sizeof p->spin);
         memcpy(r + 18, p->centre, sizeof p->centre);
         r[21] = p->active;
+        memcpy(r + 22, p->velocity_end, sizeof p->velocity_end);
+        memcpy(r + 25, p->spin_end, sizeof p->spin_end);
+        memcpy(r + 28, p->centre_end, sizeof p->centre_end);
     }
     reals_write(&w->batch, w->features->position_is_float, 0, n * POSE_WIDTH, row);
     free(row);

@@ -58,6 +58,8 @@ struct wall_pose {
     double spin[3];
     double centre[3]; /* c [m] */
     int active;       /* between appear_at and remove_at */
+    /* the same of step n itself: a point at p moves with V + W x (p - c) */
+    double velocity_end[3], spin_end[3], centre_end[3];
 };
 
 /* Poses at the steps first_step <= s < first_step + n, time s dt, into out [n][n_wall].

@@ -6,7 +6,8 @@
 static const double pi = 3.14159265358979323846;
 
 struct place {
-    double rotation[9], centre[3]; /* R; where the rotation centre has come to [m] */
+    /* R; where the rotation centre has come to [m], and how fast it is [m/s] */
+    double rotation[9], centre[3], velocity[3];
 };
 
 /* R = cos I + sin [a]x + (1 - cos) a a^T about the unit vector a, by rows (Rodrigues). */
@@ -22,10 +23,13 @@ static void rotation_about(const double a[3], double angle, double rotation[9])
 static struct place place_at(const struct wall *wall, double time)
 {
     struct place place = {.rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
-    double swing = sin(2 * pi * wall->frequency * time + wall->phase);
-    for (int a = 0; a < 3; a++)
+    double rate = 2 * pi * wall->frequency, angle = rate * time + wall->phase;
+    double swing = sin(angle), swing_rate = rate * cos(angle);
+    for (int a = 0; a < 3; a++) {
         place.centre[a] =
             wall->rotation_center[a] + (wall->velocity[a] * time + wall->amplitude[a] * swing);
+        place.velocity[a] = wall->velocity[a] + wall->amplitude[a] * swing_rate;
+    }
     if (wall->rotation_rate > 0 || wall->rotation_rate < 0)
         rotation_about(wall->rotation_axis, wall->rotation_rate * time, place.rotation);
     return place;
@@ -52,6 +56,9 @@ static struct wall_pose pose_between(const struct wall *wall, const struct place
         pose.velocity[a] = (after->centre[a] - before->centre[a]) / dt;
         pose.centre[a] = 0.5 * (after->centre[a] + before->centre[a]);
         pose.spin[a] = chord * wall->rotation_axis[a];
+        pose.velocity_end[a] = after->velocity[a];
+        pose.spin_end[a] = wall->rotation_rate * wall->rotation_axis[a];
+        pose.centre_end[a] = after->centre[a];
     }
     return pose;
 }

@@ -75,7 +75,7 @@ void account_write_elements(struct sim *s, const struct account_state *a)
     const struct features *f = &run->features;
     int n_owned, *local = local_numbers(
                      a, s->comm->n_rank > 1 ? s->comm->rank : 0, s->comm->n_rank, &n_owned);
-    size_t bytes = 4 * particles_preal(f) + (f->spin ? 8 : 4) * particles_real(f);
+    size_t bytes = particles_record(f);
     char *state = fail_alloc(N_ELEMENT * bytes);
     int64_t *gid = fail_alloc(N_ELEMENT * sizeof *gid);
     for (int i = 0; i < N_ELEMENT; i++) {

@@ -21,6 +21,7 @@ static struct contact_parameters parameters(real z, real f_b, real dt)
     p.gamma_n = (real)2 * z * r_sqrt(K * M);
     p.centring_n = p.gamma_n * dt / (2 * M);
     p.damp_n = 1 / (1 + p.centring_n);
+    p.turning_n = K * dt * dt / (2 * M);
     p.k_t = 0.8 * K;
     p.damp_t = 1;
     p.mu = MU;
@@ -32,8 +33,8 @@ static struct contact_parameters parameters(real z, real f_b, real dt)
 static struct contact_kinematics above(real z, vec3 v, vec3 w, real dt)
 {
     vec3 n = v3(0, 0, -1);
-    return contact_kinematics_wall(
-        n, n, (real)R - z, (real)R - (z - (real)0.5 * dt * v.z), v, v3(0, 0, 0), w, R);
+    return contact_kinematics_wall(n, n, (real)R - z, (real)R - (z - (real)0.5 * dt * v.z),
+        kinematics_free(v, v3(0, 0, 0), w, v3(0, 0, 0)), R);
 }
 
 /* A bond breaks while its friction spring is under load: both springs are lost, also where no Hertz

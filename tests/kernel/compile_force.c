@@ -60,6 +60,9 @@ int main(int argc, char **argv)
     features.position_is_float = !strcmp(argv[2], "single");
     for (int i = 3; i < argc; i++) set_feature(&features, argv[i]);
     features.wall = features.pair;
+    features.spin_kick =
+        features.pair.tangential_damping || features.pair.rolling_cdt || features.pair.rolling_epsd;
+    features.kick = features.spin_kick;
     struct device *dev = device_open(NULL, NULL, false, false);
     if (!dev->is_pocl || (!features.position_is_float && !dev->fp64)) {
         printf("%s on %s\n", dev->name, dev->platform_name);

@@ -34,10 +34,37 @@ void force_element(const struct force_run *run, struct record *element, double r
 #if WITH_SPIN
         element->w[a] = (real)(100 * force_any());
 #endif
+#if WITH_KICK
+        element->kick[a] = (float)(0.1 * force_any());
+#endif
+#if WITH_SPIN_KICK
+        element->spun[a] = (float)(10 * force_any());
+#endif
     }
 #if WITH_SPIN
     element->material = (real)material;
 #endif
+}
+
+struct kinematics_motion force_motion(const struct record *i, const struct record *j)
+{
+    static const struct record none;
+    vec3 zero = v3(0, 0, 0);
+    if (!j) j = &none;
+    struct kinematics_motion m =
+        kinematics_free(v3(i->v[0], i->v[1], i->v[2]), v3(j->v[0], j->v[1], j->v[2]), zero, zero);
+#if WITH_SPIN
+    m.w_i = v3(i->w[0], i->w[1], i->w[2]);
+    m.w_j = v3(j->w[0], j->w[1], j->w[2]);
+#endif
+#if WITH_KICK
+    m.kick = v3_sub(v3(i->kick[0], i->kick[1], i->kick[2]), v3(j->kick[0], j->kick[1], j->kick[2]));
+#endif
+#if WITH_SPIN_KICK
+    m.spun_i = v3(i->spun[0], i->spun[1], i->spun[2]);
+    m.spun_j = v3(j->spun[0], j->spun[1], j->spun[2]);
+#endif
+    return m;
 }
 
 void force_parameters(struct force_run *run, bool wall, double radius, double mass)

@@ -46,6 +46,8 @@ void force_element(const struct force_run *run, struct record *element, double r
 /* Rows of all pairs of materials, and the arguments of the kernel that are the same for pairs and
  * walls. */
 void force_parameters(struct force_run *run, bool wall, double radius, double mass);
+/* Of i relative to j, which is NULL at a wall at rest. */
+struct kinematics_motion force_motion(const struct record *i, const struct record *j);
 /* Positions after a step, velocities changed a little. */
 void force_move(struct record *element, int n);
 /* A history such as a contact may have; a third begins without one. */

@@ -20,6 +20,12 @@ struct record {
 #if WITH_SPIN
     real w[3], material;
 #endif
+#if WITH_KICK
+    float kick[3], no_kick;
+#endif
+#if WITH_SPIN_KICK
+    float spun[3], no_spun;
+#endif
 };
 _Static_assert(sizeof(struct record) == ELEMENT_BYTES, "a record is what element.h says");
 
@@ -41,6 +47,8 @@ static inline struct features fixture_features(void)
         .materials = WITH_MATERIALS,
         .wall_table = WITH_TABLE,
         .energy = WITH_ENERGY,
+        .kick = WITH_KICK,
+        .spin_kick = WITH_SPIN_KICK,
         .orientation = WITH_ORIENTATION,
         .periodic = {WITH_PERIODIC_X, WITH_PERIODIC_Y, WITH_PERIODIC_Z},
         .walls = WITH_WALLS,

@@ -199,18 +199,18 @@ static void sums_of(int e, real f[3], real torque[3])
         add(f, torque, &reading[2 * N_PAIR + k]);
 }
 
-/* v + (dt/2) (F/m + g) */
-static real kicked(real v, real force, real own_inverse_m, int axis)
+/* (dt/2) (F/m + g) */
+static real kick_of(real force, real own_inverse_m, int axis)
 {
-    return r_fma((real)(0.5 * dt), r_fma(force, own_inverse_m, (real)gravity[axis]), v);
+    return (real)(0.5 * dt) * r_fma(force, own_inverse_m, (real)gravity[axis]);
 }
 
 #if WITH_SPIN
-/* w + (dt/2) tau/I, I = 0.4 m r^2 */
-static real spun(real w, real torque, const struct record *r)
+/* (dt/2) tau/I, I = 0.4 m r^2 */
+static real spun_of(real torque, const struct record *r)
 {
     real own = (real)r->radius, inverse_inertia = (real)2.5 * r->inverse_m / (own * own);
-    return WITH_ROTATION ? r_fma((real)(0.5 * dt), inverse_inertia * torque, w) : w;
+    return WITH_ROTATION ? (real)(0.5 * dt) * (inverse_inertia * torque) : (real)0;
 }
 #endif
 
@@ -221,7 +221,7 @@ static void check_element(const struct test *fused, const struct test *observed,
     real f[3], torque[3];
     sums_of(e, f, torque);
     for (int a = 0; a < 3; a++) {
-        real v = kicked(r->v[a], f[a], r->inverse_m, a), v_next = kicked(v, f[a], r->inverse_m, a);
+        real kick = kick_of(f[a], r->inverse_m, a), v = r->v[a] + kick, v_next = v + kick;
         preal x = p_fma((preal)dt, (preal)v_next, r->x[a]);
         fixture_same("force", e, observed->force[e][a], f[a]);
         fixture_same("velocity when observed", e, seen->v[a], v);
@@ -229,10 +229,18 @@ static void check_element(const struct test *fused, const struct test *observed,
         fixture_same("place when observed", e, seen->x[a], r->x[a]);
         fixture_same("place", e, after->x[a], x);
 #if WITH_SPIN
-        real w = spun(r->w[a], torque[a], r), w_next = spun(w, torque[a], r);
+        real spun = spun_of(torque[a], r), w = r->w[a] + spun, w_next = w + spun;
         fixture_same("torque", e, observed->torque[e][a], torque[a]);
         fixture_same("spin when observed", e, seen->w[a], w);
         fixture_same("spin", e, after->w[a], w_next);
+#endif
+#if WITH_KICK
+        float kept = (float)kick;
+        fixture_same("kick", e, after->kick[a], kept);
+#endif
+#if WITH_SPIN_KICK
+        float kept_spun = (float)spun;
+        if (WITH_ROTATION) fixture_same("kick of the spin", e, after->spun[a], kept_spun);
 #endif
     }
     fixture_same("radius", e, after->radius, r->radius);

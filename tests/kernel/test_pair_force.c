@@ -108,11 +108,8 @@ static struct host_pair law_of(const struct test *t, int p)
 {
     const struct record *i = &t->element[t->pair_i[p]], *j = &t->element[t->pair_j[p]];
     struct host_pair host;
-    vec3 w_i = v3(0, 0, 0), w_j = w_i;
     int row = 0;
 #if WITH_SPIN
-    w_i = v3(i->w[0], i->w[1], i->w[2]);
-    w_j = v3(j->w[0], j->w[1], j->w[2]);
     row = WITH_MATERIALS ? N_MATERIAL * (int)i->material + (int)j->material : 0;
 #endif
     pvec3 D = nearest_images(p3(j->x[0] - i->x[0], j->x[1] - i->x[1], j->x[2] - i->x[2]),
@@ -123,8 +120,8 @@ static struct host_pair law_of(const struct test *t, int p)
             contact_pair_of(i->inverse_m, j->inverse_m, (real)i->radius, (real)j->radius),
             (real)STEP);
     else q = parameters_load(t->f.row[row]);
-    host.k = contact_kinematics_pair(D, v3(i->v[0], i->v[1], i->v[2]),
-        v3(j->v[0], j->v[1], j->v[2]), w_i, w_j, (real)i->radius, (real)j->radius, (real)STEP);
+    host.k = contact_kinematics_pair(
+        D, force_motion(i, j), (real)i->radius, (real)j->radius, (real)STEP);
     host.h = contact_scene_history(t->state, t->history, CAPACITY, (size_t)p);
     host.r = contact_law(host.k, q, (real)STEP, &host.h);
     return host;

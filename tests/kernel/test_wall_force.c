@@ -70,6 +70,7 @@ static void set_poses(struct test *t)
         for (int c = 9; c < POSE_WIDTH; c++) t->pose[w][c] = WITH_MOVING ? (preal)force_any() : 0;
         for (int a = 9; a < 12; a++) t->pose[w][a] *= (preal)0.1;
         for (int a = 15; a < 18; a++) t->pose[w][a] *= (preal)100;
+        for (int a = 25; a < 28; a++) t->pose[w][a] *= (preal)100;
         t->pose[w][21] = 1;
         t->wall_material[w] = WITH_TABLE ? w % N_MATERIAL : 0;
     }
@@ -162,11 +163,11 @@ static struct host_contact law_of(const struct test *t, int c)
     struct wall_primitive w = primitive_of(t, t->candidate[c]);
     int wall = t->wall_of[t->candidate[c]], row = 0;
     pvec3 x = p3(e->x[0], e->x[1], e->x[2]);
-    vec3 v = v3(e->v[0], e->v[1], e->v[2]), spin = v3(0, 0, 0);
+    struct kinematics_motion m = force_motion(e, NULL);
+    vec3 v = m.v;
     real own = (real)e->radius;
     struct host_contact host;
 #if WITH_SPIN
-    spin = v3(e->w[0], e->w[1], e->w[2]);
     if (WITH_MATERIALS) row = N_MATERIAL * (int)e->material;
 #endif
     if (WITH_TABLE) row += t->wall_material[wall];
@@ -183,8 +184,10 @@ static struct host_contact law_of(const struct test *t, int c)
         host.h.state = 0;
     }
     host.v_wall = g.v;
+    m.v = v3_sub(m.v, g.v);
+    m.kick = v3_sub(m.kick, g.kick);
     host.k = contact_kinematics_wall(
-        g.n, g.n_half, own - (real)g.distance, own - (real)g.distance_half, v, g.v, spin, own);
+        g.n, g.n_half, own - (real)g.distance, own - (real)g.distance_half, m, own);
     host.r = contact_law(host.k, q, (real)STEP, &host.h);
     return host;
 }

@@ -7,7 +7,7 @@
 
 struct variant_input {
     pvec3 D;
-    vec3 v_i, v_j, w_i, w_j;
+    struct kinematics_motion m;
     real r_i, r_j, dt;
     struct contact_parameters p;
     struct contact_history h;

@@ -97,7 +97,7 @@ static struct contact_result at(double delta, double f_b, double mu, struct cont
     vec3 zero = v3(0, 0, 0);
     pvec3 D = p3((preal)(2 * IMPACT_R - delta), 0, 0);
     struct contact_kinematics k = contact_kinematics_pair(
-        D, zero, zero, zero, zero, (real)IMPACT_R, (real)IMPACT_R, (real)1e-6);
+        D, kinematics_free(zero, zero, zero, zero), (real)IMPACT_R, (real)IMPACT_R, (real)1e-6);
     c.f_b = (real)f_b;
     c.mu = (real)mu;
     return contact_law(k, contact_parameters_of(c, sizes, (real)1e-6), (real)1e-6, h);

@@ -126,9 +126,9 @@ static void rest_loses_nothing(void **state)
     (void)state;
     c.mu = 0.5;
     p = contact_parameters_of(c, contact_pair_of(500, 500, 5e-3, 5e-3), 1e-6);
-    x = contact_law(
-        contact_kinematics_pair(p3(0.99999e-2, 0, 0), zero, zero, zero, zero, 5e-3, 5e-3, 1e-6), p,
-        1e-6, &h);
+    x = contact_law(contact_kinematics_pair(p3(0.99999e-2, 0, 0),
+                        kinematics_free(zero, zero, zero, zero), 5e-3, 5e-3, 1e-6),
+        p, 1e-6, &h);
     assert_true(x.loss_n == 0 && x.loss_t == 0 && x.loss_s == 0 && x.loss_r == 0 && x.loss_b == 0);
     assert_true(x.elastic > 0);
 }

@@ -56,8 +56,8 @@ static void overlap_far_from_the_origin(void **state)
         double a = 0.0628 * k, at = 0.3 + 1e-3 * k;
         pvec3 x_i = p3((preal)at, (preal)at, 0), x_j = p3((preal)(at + (2 * r - delta) * cos(a)),
                                                      (preal)(at + (2 * r - delta) * sin(a)), 0);
-        struct contact_kinematics q = contact_kinematics_pair(
-            p3_sub(x_j, x_i), zero, zero, zero, zero, (real)r, (real)r, (real)1e-6);
+        struct contact_kinematics q = contact_kinematics_pair(p3_sub(x_j, x_i),
+            kinematics_free(zero, zero, zero, zero), (real)r, (real)r, (real)1e-6);
         double rounded = 2 * (double)(real)r - 2 * r; /* the radius itself */
         assert_near(((double)q.delta - rounded) / delta, 1, known);
     }

@@ -136,20 +136,21 @@ static void moment_opposes_rolling(void **state)
             contact_parameters_of(c, contact_pair_of(1 / m, 1 / m, r, r), 1e-5);
         struct contact_history h = {.state = CONTACT_TOUCHING};
         vec3 zero = v3(0, 0, 0), w_i = v3(7, 3, 0), w_j = v3(7, -1, 0);
-        struct contact_result x = contact_law(
-            contact_kinematics_pair(p3(1.99 * r, 0, 0), zero, zero, w_i, w_j, r, r, 1e-5), p, 1e-5,
-            &h);
+        struct contact_result x =
+            contact_law(contact_kinematics_pair(
+                            p3(1.99 * r, 0, 0), kinematics_free(zero, zero, w_i, w_j), r, r, 1e-5),
+                p, 1e-5, &h);
         assert_true(x.moment.y < 0);
         assert_near(x.moment.x, 0, 1e-20);
         assert_near(x.moment.z, 0, 1e-20);
         h = (struct contact_history){.state = CONTACT_TOUCHING};
-        x = contact_law(
-            contact_kinematics_pair(p3(1.99 * r, 0, 0), zero, zero, w_j, w_i, r, r, 1e-5), p, 1e-5,
-            &h);
+        x = contact_law(contact_kinematics_pair(
+                            p3(1.99 * r, 0, 0), kinematics_free(zero, zero, w_j, w_i), r, r, 1e-5),
+            p, 1e-5, &h);
         assert_true(x.moment.y > 0);
         h = (struct contact_history){.state = CONTACT_TOUCHING};
-        x = contact_law(
-            contact_kinematics_pair(p3(1.99 * r, 0, 0), zero, zero, v3(5, 0, 0), zero, r, r, 1e-5),
+        x = contact_law(contact_kinematics_pair(p3(1.99 * r, 0, 0),
+                            kinematics_free(zero, zero, v3(5, 0, 0), zero), r, r, 1e-5),
             p, 1e-5, &h);
         assert_near(x.moment.x, 0, 0); /* pure twisting */
     }

@@ -116,8 +116,8 @@ static double cycle(double a, double b, int steps)
             struct contact_result x;
             delta += squeeze / steps;
             /* a translation: j held, i moves; the distance stays in x, the shear is far below it */
-            x = contact_law(contact_kinematics_pair(p3(2 * r - delta, 0, 0), v3(v_n, v_t, 0), zero,
-                                zero, zero, r, r, dt),
+            x = contact_law(contact_kinematics_pair(p3(2 * r - delta, 0, 0),
+                                kinematics_free(v3(v_n, v_t, 0), zero, zero, zero), r, r, dt),
                 p, dt, &h);
             work += 0.5 * (force + x.force.y) * v_t * dt;
             force = x.force.y;
@@ -152,11 +152,13 @@ static void mindlin_keeps_force_or_displacement(void **state)
     c.mu = 1e6;
     p = contact_parameters_of(c, contact_pair_of(500, 500, r, r), dt);
     /* grew from 1e-5 */
-    k = contact_kinematics_pair(p3(2 * r - 1.1e-5, 0, 0), v3(1, 0, 0), zero, zero, zero, r, r, dt);
+    k = contact_kinematics_pair(
+        p3(2 * r - 1.1e-5, 0, 0), kinematics_free(v3(1, 0, 0), zero, zero, zero), r, r, dt);
     assert_near(contact_law(k, p, dt, &h).force.y / (-k_1 * 1e-7), 1, 1e-6);
     h.xi.y = 1e-7;
     /* fell from 1.1e-5 */
-    k = contact_kinematics_pair(p3(2 * r - 1.0e-5, 0, 0), v3(-1, 0, 0), zero, zero, zero, r, r, dt);
+    k = contact_kinematics_pair(
+        p3(2 * r - 1.0e-5, 0, 0), kinematics_free(v3(-1, 0, 0), zero, zero, zero), r, r, dt);
     assert_near(contact_law(k, p, dt, &h).force.y / (-k_1 * 1e-7), 1, 1e-6);
     assert_true(k_2 > k_1);
 }
@@ -178,12 +180,14 @@ static void slip_cuts_the_spring(void **state)
     p = contact_parameters_of(c, contact_pair_of(500, 500, r, r), dt);
     for (int k = 0; k < 100; k++)
         x = contact_law(
-            contact_kinematics_pair(D, v3(0, 1, 0), zero, zero, zero, r, r, dt), p, dt, &h);
+            contact_kinematics_pair(D, kinematics_free(v3(0, 1, 0), zero, zero, zero), r, r, dt), p,
+            dt, &h);
     assert_near(x.force.y / -cap, 1, 1e-9);
     assert_near((x.elastic - 0.5 * 1e4 * delta * delta) / (cap * cap / (2 * 8e3)), 1, 1e-6);
     for (; x.force.y < 0.999 * cap && steps < 100; steps++)
         x = contact_law(
-            contact_kinematics_pair(D, v3(0, -1, 0), zero, zero, zero, r, r, dt), p, dt, &h);
+            contact_kinematics_pair(D, kinematics_free(v3(0, -1, 0), zero, zero, zero), r, r, dt),
+            p, dt, &h);
     assert_near(steps, 2 * cap / 8e3 / dt, 1);
 }
 

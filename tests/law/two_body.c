@@ -8,7 +8,7 @@ struct body two_body_sphere(real m, real r, pvec3 x, vec3 v, vec3 w)
     b.x = x;
     b.v = v;
     b.w = w;
-    b.force = b.torque = v3(0, 0, 0);
+    b.force = b.torque = b.kick = b.spun = v3(0, 0, 0);
     b.m = m;
     b.r = r;
     b.mobility = 1;
@@ -26,31 +26,34 @@ void two_body_set(struct two_body *s, struct contact_material c)
     memset(s->lost, 0, sizeof s->lost);
 }
 
-static vec3 kick(vec3 v, vec3 force, real factor)
-{
-    return v3_fma(factor, force, v);
-}
-
 static void kick_half(struct two_body *s)
 {
     for (int n = 0; n < 2; n++) {
         struct body *b = &s->b[n];
-        b->v = kick(b->v, b->force, (real)0.5 * s->dt * b->mobility / b->m);
-        b->w = kick(
-            b->w, b->torque, (real)0.5 * s->dt * b->mobility / ((real)0.4 * b->m * b->r * b->r));
+        real half = (real)0.5 * s->dt * b->mobility / b->m;
+        b->kick = v3_scale(half, b->force);
+        b->spun = v3_scale(half / ((real)0.4 * b->r * b->r), b->torque);
+        b->v = v3_add(b->v, b->kick);
+        b->w = v3_add(b->w, b->spun);
     }
 }
 
 static struct contact_kinematics kinematics(const struct two_body *s)
 {
     const struct body *i = &s->b[0], *j = &s->b[1];
+    vec3 zero = v3(0, 0, 0);
+    struct kinematics_motion m =
+        kinematics_free(i->v, s->plane ? zero : j->v, i->w, s->plane ? zero : j->w);
+    m.kick = s->plane ? i->kick : v3_sub(i->kick, j->kick);
+    m.spun_i = i->spun;
+    m.spun_j = s->plane ? zero : j->spun;
     if (s->plane) {
-        vec3 down = v3(0, 0, -1), zero = v3(0, 0, 0);
+        vec3 down = v3(0, 0, -1);
         real delta = (real)((preal)i->r - i->x.z);
         return contact_kinematics_wall(
-            down, down, delta, delta + (real)0.5 * s->dt * i->v.z, i->v, zero, i->w, i->r);
+            down, down, delta, delta + (real)0.5 * s->dt * i->v.z, m, i->r);
     }
-    return contact_kinematics_pair(p3_sub(j->x, i->x), i->v, j->v, i->w, j->w, i->r, j->r, s->dt);
+    return contact_kinematics_pair(p3_sub(j->x, i->x), m, i->r, j->r, s->dt);
 }
 
 void two_body_step(struct two_body *s)

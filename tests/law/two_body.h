@@ -7,10 +7,12 @@
 #include "kernels/contact/law_contact.h"
 
 struct body {
-    pvec3 x;       /* [m] */
-    vec3 v, w;     /* full step [m/s], [rad/s] */
-    vec3 force;    /* [N] */
-    vec3 torque;   /* [N m] */
+    pvec3 x;     /* [m] */
+    vec3 v, w;   /* full step [m/s], [rad/s] */
+    vec3 force;  /* [N] */
+    vec3 torque; /* [N m] */
+    vec3 kick;   /* what the last half kick gave v and w [m/s], [rad/s] */
+    vec3 spun;
     real m, r;     /* [kg], [m] */
     real mobility; /* 1; 0: held fast */
 };
