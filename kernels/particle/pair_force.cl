@@ -51,6 +51,7 @@
 #define RADIUS(k) radius
 #endif
 
+#if WITH_SPIN || WITH_SPIN_KICK
 /* Two spins, or their sum, to the rows from `row` on. */
 LAW void pair_keep_spins(real4 wi, real4 wj, int row, __local real *loc, size_t l)
 {
@@ -58,6 +59,7 @@ LAW void pair_keep_spins(real4 wi, real4 wj, int row, __local real *loc, size_t 
     ROW3_STORE(loc, row, l, wi.s0, wi.s1, wi.s2);
     if (BOTH_SPINS) { ROW3_STORE(loc, row + 3, l, wj.s0, wj.s1, wj.s2); }
 }
+#endif
 
 /* Differences of positions and velocities, spins, and what sizes and materials there are. */
 LAW void pair_load(int i, int j, __global const preal *position, __global const real *motion,
