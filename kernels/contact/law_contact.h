@@ -99,13 +99,13 @@ LAW void contact_ledger(struct contact_kinematics k, struct contact_parameters p
         real stiffness_old = p.mu > 0 ? p.k_t * s.carry.before : (real)0;
         real lost = slider_loss(stiffness_old, h->xi, s.normal.alive ? stiffness_t : (real)0,
             s.trial_t, s.slide.spring, k.v_t, s.carry);
-        lost -= s.slide.slips ? before_touch * v3_dot(s.slide.force, k.v_t) : (real)0;
+        lost +=
+            s.slide.slips ? before_touch * stiffness_t * v3_dot(s.slide.spring, k.v_t) : (real)0;
         r->elastic += (real)0.5 * stiffness_t * v3_dot(s.slide.spring, s.slide.spring);
         r->loss_s = s.normal.broke ? (real)0 : lost;
         r->loss_b = s.normal.broke ? lost : (real)0;
         if (WITH_TANGENTIAL_DAMPING) {
-            vec3 damping =
-                contact_select(!s.slide.slips, v3_fma(stiffness_t, s.slide.spring, s.slide.force));
+            vec3 damping = v3_fma(stiffness_t, s.slide.spring, s.slide.force);
             r->loss_t = -half_dt * v3_dot(v3_add(h->damping_t, damping), k.v_t);
             h->damping_t = damping;
         }
@@ -122,11 +122,10 @@ LAW void contact_ledger(struct contact_kinematics k, struct contact_parameters p
             real lost = slider_loss(p.k_r * s.carry.before, h->theta,
                 s.normal.alive ? stiffness_r : (real)0, s.trial_r, s.roll.spring, k.w_r, s.carry);
             /* CDT: spring 0 */
-            damping = contact_select(
-                !s.roll.slips || !contact_is_epsd(p), v3_fma(stiffness_r, s.roll.spring, moment));
+            damping = v3_fma(stiffness_r, s.roll.spring, moment);
             r->elastic += (real)0.5 * stiffness_r * v3_dot(s.roll.spring, s.roll.spring);
             r->loss_r = s.roll.slips && contact_is_epsd(p)
-                            ? lost - before_touch * v3_dot(s.roll.force, k.w_r)
+                            ? lost + before_touch * stiffness_r * v3_dot(s.roll.spring, k.w_r)
                             : lost;
         }
         r->loss_r -= half_dt * v3_dot(v3_add(h->damping_r, damping), k.w_r);

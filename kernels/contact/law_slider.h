@@ -2,10 +2,10 @@
  * resistance are both of this kind.
  *
  * Trial, then slip: T = -k x. |T| <= cap: the force is T with the dashpot, shortened to the cap.
- * |T| > cap: the force is the cap, without dashpot, and the spring is cut to it, so that it never
- * holds more than cap^2/(2 k). At rest the dashpot has no part, so T is the force itself, and the
- * contact holds any load up to the cap. The force is continuous where slip begins (the cap on both
- * sides) and, with the dashpot, where it ends (its velocity is zero there).
+ * |T| > cap: the spring is cut to the cap, so that it never holds more than cap^2/(2 k), and the
+ * rest is the same. At rest the dashpot has no part, so T is the force itself, and the contact
+ * holds any load up to the cap. The dashpot stays where the spring is cut: where the cap falls
+ * below a spring that moves back, the force would jump without it, which is of first order.
  *
  * The slip goes along the mean force of the step: with B the spring's force before this step's way,
  *     F = T - a (B + F), |F| = cap  =>  F = (T - a B)/(1 + a),
@@ -89,7 +89,6 @@ LAW struct slider slider_slip(vec3 trial, vec3 before, real k, int damped, vec3 
     real limit = cap * cap;
     real square = v3_dot(u, u);
     int slips = square > limit;
-    int shorten = slips;
     real scale;
     /* the way back */
     real excess = square - limit, along = v3_dot(u, b) + limit;
@@ -98,20 +97,20 @@ LAW struct slider slider_slip(vec3 trial, vec3 before, real k, int damped, vec3 
     real a = turns ? excess / (along + r_sqrt(root)) : (real)0;
     u = v3_fma(-a, b, u);
     square = turns ? v3_dot(u, u) : square;
-
-    if (damped) {
-        u.x = slips ? u.x : u.x + dashpot.x;
-        u.y = slips ? u.y : u.y + dashpot.y;
-        u.z = slips ? u.z : u.z + dashpot.z;
-        square = v3_dot(u, u);
-        shorten = square > limit;
-    }
-    scale = shorten ? cap / r_sqrt(square) : (real)1;
-    r.force = v3_scale(scale, u);
+    scale = slips ? cap / r_sqrt(square) : (real)1;
+    u = v3_scale(scale, u);
     vec3 x = v3_fma(-a, before, trial);
     r.spring = v3(slips ? scale * x.x : trial.x, slips ? scale * x.y : trial.y,
         slips ? scale * x.z : trial.z);
     r.slips = slips;
+    if (damped) {
+        u = v3_add(u, dashpot);
+        square = v3_dot(u, u);
+        /* a spring that has just been cut to the cap is not cut again for its rounding */
+        int shorten = square > limit && v3_dot(dashpot, dashpot) > 0;
+        u = v3_scale(shorten ? cap / r_sqrt(square) : (real)1, u);
+    }
+    r.force = u;
     return r;
 }
 

@@ -124,7 +124,7 @@ class Bed(bodies.Case):
     """A bed of 200 spheres of sizes within 10 % in a box, stirred. Medians over the spheres: a few
     that meet at a grazing angle, or not, would rule a mean."""
 
-    END, STEPS = 4e-3, (2e-5, 1e-5, 5e-6, 2.5e-6)
+    END, STEPS = 4e-3, (3.2e-5, 1.6e-5, 8e-6, 4e-6, 2e-6)
 
     def bed(self, rows, z, friction, step, end):
         wall = [[0, 0, 0], [0.025, 0, 0], [0, 0.025, 0]]
@@ -175,19 +175,15 @@ class Bed(bodies.Case):
         reached = math.log2(errors[0] / errors[-1]) / (len(errors) - 1)
         print(f"z = {z}, mu = {friction}: median errors of a place", [f"{e:.2e}" for e in errors])
         print(f"order {reached:.2f} over {len(errors) - 1} halvings")
-        return reached, errors
+        return reached
 
     def test_without_friction(self):
         for z in (0.1, 0.4):
-            self.assertGreater(self.order(z, 0)[0], 1.9)
+            self.assertGreater(self.order(z, 0), 1.9)
 
     def test_with_friction(self):
-        """Between first and second order. Slip that goes back along the trial force has 3.0e-8 m at
-        5e-6 s and z = 0.1."""
         for z in (0.1, 0.4):
-            reached, errors = self.order(z, 0.3)
-            self.assertGreater(reached, 1.1)
-            self.below("median error at 5e-6 s [m]", errors[2], 1.5e-8)
+            self.assertGreater(self.order(z, 0.3), 1.9)
 
 
 if __name__ == "__main__":
