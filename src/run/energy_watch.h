@@ -4,11 +4,10 @@
 
 #include "sim.h"
 
-/* Ends the run (exit code 5) where the balance error of the measured energy is not a number, or
- * more than ten times what was there at the start and has been supplied since, plus `spare` for
- * round-off; where the scene allows an unstable step, more than a million times. All in J and the
- * same on every rank. (Coarse steps, still stable, may be off by about once while a contact
- * lasts.) Collective. */
+/* Ends the run (exit code 5) where the balance error of the measured energy is not a number, or,
+ * unless the scene allows an unstable step, more than ten times what was there at the start and
+ * has been supplied since, plus `spare` for round-off; all in J and the same on every rank.
+ * (Coarse steps, still stable, may be off by about once while a contact lasts.) Collective. */
 void energy_watch(struct sim *s, double balance, double supplied, double spare);
 
 #endif

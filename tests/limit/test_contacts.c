@@ -49,7 +49,7 @@ static const char scene_text[] =
     "    material: floor\n"
     "    surface: {rectangle: {center: [0.5, 0.5, 1], normal: [0, 0, 1], size: [4, 4]}}\n"
     "    motion: {velocity: [0, 0, -2]}\n"
-    "domain: {periodic: [y], box: {min: [0, 0, 0], max: [1, 1, 1]}}\n";
+    "domain: {periodic: [y], start_overlap: 9, box: {min: [0, 0, 0], max: [1, 1, 1]}}\n";
 
 static struct comm *comm;
 static char folder[] = "/tmp/democles_limit_XXXXXX";
