@@ -11,6 +11,9 @@
 #include "comm/fail.h"
 #include "generate_parts.h"
 
+/* beyond, the next cell has no number of its own */
+static const double most_cells = 0x1p52;
+
 struct generate_grid {
     const struct scene *scene;
     const struct elements_host *e;
@@ -98,12 +101,15 @@ static void look_on_level(
     const struct generate_grid *grid, struct look *look, const struct level *level)
 {
     double reach = look->radius + level->largest, low[3], high[3], cell[3], n = 1;
+    bool is_near = true;
     for (int a = 0; a < 3; a++) {
         low[a] = floor((look->x[a] - reach) / (2 * level->largest));
         high[a] = floor((look->x[a] + reach) / (2 * level->largest));
         n *= high[a] - low[a] + 1;
+        is_near = is_near && fabs(low[a]) < most_cells && fabs(high[a]) < most_cells;
     }
-    if (n > (double)grid->e->n) { /* a large sphere among small ones, or few */
+    /* a large sphere among small ones, few, or so far away that cells cannot be counted */
+    if (!is_near || !(n <= (double)grid->e->n)) {
         for (int64_t j = 0; j < grid->e->n; j++) meet(grid, look, level, j);
         return;
     }
