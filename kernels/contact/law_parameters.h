@@ -60,11 +60,10 @@ struct contact_pair {
     X(real, f_b)        /* [N] */                                                                  \
     X(real, jkr)        /* JKR: L = (2 pi w R*^(1/2)/E*)^(2/3) [m]; 0: none */                     \
     X(real, roll_limit) /* mu_r R* [m] */                                                          \
-    X(real,                                                                                        \
-        roll_stop) /* CDT: 1/(2 dt (1/I_i + 1/I_j)) [N m s]: moment per spin, halves it in dt */   \
-    X(real, k_r)   /* EPSD: [N m] / [N m^0.5]; 0: CDT */                                           \
-    X(real, c_r)   /* EPSD: [N m s] / [N m^0.75 s] */                                              \
-    X(int, law)    /* CONTACT_ bits */
+    X(real, roll_stop)  /* CDT: 1/(2 dt (1/I_i + 1/I_j)) [N m s], halves w_r in dt */              \
+    X(real, k_r)        /* EPSD: [N m] / [N m^0.5]; 0: CDT */                                      \
+    X(real, c_r)        /* EPSD: [N m s] / [N m^0.75 s] */                                         \
+    X(int, law)         /* CONTACT_ bits */
 
 #define CONTACT_MEMBER(type, name) type name;
 struct contact_material {

@@ -101,6 +101,23 @@ LAW struct lattice_view lattice_view_of(__global const preal *x, __global const 
     return s;
 }
 
+/* For kernels whose arguments have these names: s, the view of a run, and RUN(mixed) over its
+ * cells, which are of one kind or (mixed) of several. what: of `info`. */
+#if WITH_VOLUME
+#define VIEW_PRESSURE s.p = p;
+#else
+#define VIEW_PRESSURE
+#endif
+#define RUN_CELLS(run, what)                                                                       \
+    struct lattice_view s = lattice_view_of(x + x_in, v + v_in, word, link, base, run, n_run,      \
+        n_kind, (what) & (RUN_MIXED - 1), (size_t)plane);                                          \
+    VIEW_PRESSURE                                                                                  \
+    if (WITH_KINDS && (what) >= RUN_MIXED) {                                                       \
+        RUN(1)                                                                                     \
+    } else {                                                                                       \
+        RUN(0)                                                                                     \
+    }
+
 #ifdef __OPENCL_VERSION__
 /* Pieces that are fetched ahead: of what lies at the front of the tile, x of the run beside that
  * comes last, and of what belongs to the cells alone. On 100^3 cells in double precision, pocl 3.1,

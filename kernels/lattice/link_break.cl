@@ -56,16 +56,7 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void link_brea
 {
     if (get_group_id(0) >= (size_t)n) return;
     int run = 1 + get_group_id(0), what = info[run], kind = what & (RUN_MIXED - 1);
-    struct lattice_view s = lattice_view_of(
-        x + x_in, v + v_in, word, link, base, run, n_run, n_kind, kind, (size_t)plane);
-#if WITH_VOLUME
-    s.p = p;
-#endif
-    if (WITH_KINDS && what >= RUN_MIXED) {
-        RUN(1)
-    } else {
-        RUN(0)
-    }
+    RUN_CELLS(run, what)
 }
 
 /* Own cells of the runs of `list` lose the links that are broken, and learn which are due. */

@@ -43,14 +43,5 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void link_stre
 {
     if (get_group_id(0) >= (size_t)n) return;
     int run = list[get_group_id(0)], what = info[run];
-    struct lattice_view s = lattice_view_of(x + x_in, v + v_in, word, link, base, run, n_run,
-        n_kind, what & (RUN_MIXED - 1), (size_t)plane);
-#if WITH_VOLUME
-    s.p = p;
-#endif
-    if (WITH_KINDS && what >= RUN_MIXED) {
-        RUN(1)
-    } else {
-        RUN(0)
-    }
+    RUN_CELLS(run, what)
 }

@@ -5,7 +5,6 @@
 
 #include "check_parts.h"
 #include "comm/fail.h"
-#include "lattice/lattice_fit.h"
 #include "lattice/lattice_input.h"
 #include "lattice/lattice_frequency.h"
 #include "lattice/lattice_loads.h"
@@ -38,7 +37,7 @@ static void print_material(const struct material *m)
 /* Of round bodies and of meshes: how much of the shape the cells hold, and how fine they are. */
 static void print_fit(const struct scene *scene, const struct lattice_cells *cells, int b)
 {
-    struct lattice_fit fit = lattice_fit_of(scene, cells, b);
+    struct lattice_fit fit = cells->fit[b];
     double h = scene->body[b].cell, least = fmin(fit.shape[0], fmin(fit.shape[1], fit.shape[2]));
     if (fit.is_box && isinf(fit.radius)) return;
     printf("        %.4g of the volume of its shape; %.3g cells along its smallest extent",

@@ -35,11 +35,12 @@ struct lattice_kind {
     int material, grid;
 };
 
-/* The cells that a body has cut, before later bodies took some: how many, first and last on its
- * grid. */
-struct lattice_span {
-    int64_t n;
-    int32_t low[3], high[3];
+/* How well the cells that a body has cut, before later bodies took some, fill its shape. */
+struct lattice_fit {
+    double cells[3], shape[3]; /* extents of the cells and of the shape [m] */
+    double volume;             /* of the cells over that of the shape without its holes' [1] */
+    double radius; /* smallest radius of the shape and its holes [m]; infinite: none is round */
+    bool is_box;   /* the shape, apart from holes */
 };
 
 struct lattice_cells {
@@ -56,9 +57,9 @@ struct lattice_cells {
     /* [n] velocity at time 0 [m/s]: 0 of a fixed DOF, as prescribed of a prescribed one; NULL: all
      * zero */
     double (*v)[3];
-    double (*w)[3];            /* [n] likewise, angular [rad/s]; NULL together with v */
-    int64_t *n_of_body;        /* [scene.n_body] cells of each */
-    struct lattice_span *span; /* [scene.n_body] */
+    double (*w)[3];          /* [n] likewise, angular [rad/s]; NULL together with v */
+    int64_t *n_of_body;      /* [scene.n_body] cells of each */
+    struct lattice_fit *fit; /* [scene.n_body] */
     struct lattice_loads *loads;
 };
 
@@ -66,6 +67,11 @@ struct lattice_cells {
  * cannot be. Not collective. */
 struct lattice_cells *lattice_cells_create(const struct scene *scene, struct scene_errors *errors);
 void lattice_cells_free(struct lattice_cells *cells);
+
+/* A warning for each body whose volume, or extent where it is a box, the cells miss by more than
+ * 1 %, with the nearest sizes of cells that fit a box so well, if there are any. */
+void lattice_fit_warnings(
+    const struct scene *scene, const struct lattice_cells *cells, struct scene_errors *warnings);
 
 /* Centre of cell i [m]. */
 void lattice_cells_centre(const struct lattice_cells *cells, int64_t i, double x[3]);

@@ -156,9 +156,9 @@ struct lattice_cells *lattice_cells_create(const struct scene *scene, struct sce
         append(cells, scene, g, &list);
     }
     if (errors->n == before) check_counts(scene, cells, cut, errors);
-    cells->span = fail_alloc((size_t)scene->n_body * sizeof *cells->span);
+    cells->fit = fail_alloc((size_t)scene->n_body * sizeof *cells->fit);
     for (int b = 0; b < scene->n_body; b++) {
-        cells->span[b] = cut[b].span;
+        if (errors->n == before) cells->fit[b] = lattice_fit_of(&cut[b]);
         lattice_cut_close(&cut[b]);
     }
     free(cut);
@@ -191,6 +191,6 @@ void lattice_cells_free(struct lattice_cells *cells)
     free(cells->v);
     free(cells->w);
     free(cells->n_of_body);
-    free(cells->span);
+    free(cells->fit);
     free(cells);
 }

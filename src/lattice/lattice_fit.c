@@ -1,5 +1,4 @@
-#include "lattice_fit.h"
-
+/* How well the cells of a body fill its shape. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -38,29 +37,22 @@ static double radius_of(const struct region *region)
     return is_round ? region->radius : HUGE_VAL;
 }
 
-struct lattice_fit lattice_fit_of(
-    const struct scene *scene, const struct lattice_cells *cells, int b)
+struct lattice_fit lattice_fit_of(const struct lattice_cut *cut)
 {
-    const struct body *body = &scene->body[b];
-    const struct lattice_span *span = &cells->span[b];
+    const struct body *body = cut->body;
+    const struct lattice_span *span = &cut->span;
     struct lattice_fit fit = {
         .is_box = body->shape.kind == REGION_BOX, .radius = radius_of(&body->shape)};
-    struct scene_errors errors = {0};
-    struct lattice_cut cut;
-    if (lattice_cut_open(&cut, scene, b, &errors)) {
-        double box = 1, h = body->cell;
-        for (int a = 0; a < 3; a++) {
-            fit.cells[a] = (span->high[a] - span->low[a] + 1) * h;
-            fit.shape[a] = cut.shape.high[a] - cut.shape.low[a];
-            box *= fit.shape[a];
-        }
-        bool is_whole = fit.is_box && body->n_minus == 0;
-        fit.volume = (double)span->n * h * h * h / (box * (is_whole ? 1 : share_inside(&cut)));
-        for (int m = 0; m < body->n_minus; m++)
-            fit.radius = fmin(fit.radius, radius_of(&body->minus[m]));
+    double box = 1, h = body->cell;
+    for (int a = 0; a < 3; a++) {
+        fit.cells[a] = (span->high[a] - span->low[a] + 1) * h;
+        fit.shape[a] = cut->shape.high[a] - cut->shape.low[a];
+        box *= fit.shape[a];
     }
-    lattice_cut_close(&cut);
-    scene_errors_free(&errors);
+    bool is_whole = fit.is_box && body->n_minus == 0;
+    fit.volume = (double)span->n * h * h * h / (box * (is_whole ? 1 : share_inside(cut)));
+    for (int m = 0; m < body->n_minus; m++)
+        fit.radius = fmin(fit.radius, radius_of(&body->minus[m]));
     return fit;
 }
 
@@ -89,7 +81,7 @@ void lattice_fit_warnings(
     const struct scene *scene, const struct lattice_cells *cells, struct scene_errors *warnings)
 {
     for (int b = 0; b < scene->n_body; b++) {
-        struct lattice_fit fit = lattice_fit_of(scene, cells, b);
+        struct lattice_fit fit = cells->fit[b];
         double off = fabs(fit.volume - 1);
         for (int a = 0; a < 3 && fit.is_box; a++)
             off = fmax(off, fabs(fit.cells[a] / fit.shape[a] - 1));

@@ -7,7 +7,6 @@
 
 #include "comm/fail.h"
 #include "lattice_fields.h"
-#include "lattice_fit.h"
 #include "lattice_frequency.h"
 #include "lattice_restore.h"
 #include "run/output.h"
@@ -148,7 +147,7 @@ static bool is_at_rest(struct sim *s)
         yes = lattice_relax_second(relax, s->scene->lattice.tolerance);
         const struct lattice_rest *rest = lattice_relax_rest(relax);
         s->rest.left = rest->left > 0 ? rest->left / rest->scale : 0;
-        s->rest.damping = lattice_relax_rest(relax)->alpha;
+        s->rest.damping = rest->alpha;
     } else {
         lattice_relax_first(relax);
     }

@@ -10,11 +10,14 @@
 
 struct walls;
 
-/* Pairs of elements that overlap, periodic images included, and the one that does so most. */
+/* Pairs of elements that overlap, periodic images included, and the one that does so most; elements
+ * that coincide with another, and the first of these with their partners, lower index first. */
+enum { GENERATE_NAMED = 3 };
 struct generate_overlaps {
     int64_t n;
     double share, depth; /* [1] of the smaller radius, [m] */
     int64_t element[2];  /* -1: none */
+    int64_t n_same, same[GENERATE_NAMED][2];
 };
 
 /* All elements in the order of groups; the global id is the index. */
@@ -38,8 +41,8 @@ struct elements_host {
  *   File: CSV, first line names the columns.
  * Then checks that no two centres coincide (nearer than 1e-3 of the smaller radius, periodic images
  * included), that all centres are in the domain's box and that no two elements overlap by more than
- * domain.start_overlap. NULL with messages in `errors`, each with
- * the file and line that it is about, if anything is wrong. Not collective. */
+ * domain.start_overlap. NULL with messages in `errors`, each with the file and line that it is
+ * about, if anything is wrong. Not collective. */
 struct elements_host *generate_elements(const struct scene *scene, struct scene_errors *errors);
 void generate_free(struct elements_host *elements);
 

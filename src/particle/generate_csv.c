@@ -1,6 +1,7 @@
 /* Elements from a CSV file: a header that names the columns, in any order, then a line per element
  * in SI units. Spaces around a field and empty lines do not count. Each fault is reported with
  * file:line:column, up to ten per file. */
+#include "base/files.h"
 #include "comm/fail.h"
 #include "generate_parts.h"
 #include "base/nearest.h"
@@ -171,7 +172,7 @@ void generate_read_csv(
 {
     const struct element_group *of = scene->group + group;
     struct csv csv = {.path = of->file, .errors = errors};
-    FILE *file = fopen(of->file, "r");
+    FILE *file = files_input(of->file);
     if (!file) {
         scene_errors_add(errors, "%s:%d: elements '%s': %s: %s", scene->path, of->line, of->name,
             of->file, strerror(errno));

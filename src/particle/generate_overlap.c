@@ -1,9 +1,10 @@
-/* Which particles of a start overlap, in O(n) for any mixture of sizes.
+/* Which particles of a start overlap or coincide, in O(n) for any mixture of sizes.
  *
  * Particles are dealt to levels, r in [2^(l-1), 2^l), each with a grid of cells as wide as its
- * largest diameter. Of a pair the smaller one looks for the larger: r_i + r_j is at most a cell's
- * width on its level, so 27 cells are enough, and particles that do not overlap much are few in
- * each. */
+ * largest diameter. They are added from the highest level down, and each looks for those that are
+ * there: r_i + r_j is at most a cell's width on a level that is not below its own, so 27 cells are
+ * enough, and particles that do not overlap much are few in each. What coincides with another is
+ * not added: many in one place stay O(n). */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,6 +14,8 @@
 
 /* beyond, the next cell has no number of its own */
 static const double most_cells = 0x1p52;
+/* of the smaller radius: no contact law knows a normal there */
+static const double coincidence = 1e-3;
 
 struct generate_grid {
     const struct scene *scene;
@@ -24,12 +27,13 @@ struct generate_grid {
     int n_level;
     double largest; /* radius [m] */
     uint64_t mask;
-    int64_t *head, *next;
+    int64_t *head, *next; /* next: NOT_THERE of an element that has not been added */
 };
+enum { LAST = -1, NOT_THERE = -2 };
 
 /* A sphere that looks for partners: element i, or -1 where it is none; where it is, or an image. */
 struct look {
-    int64_t i;
+    int64_t i, same; /* the first that coincides with it, or -1 */
     double x[3], radius;
     struct generate_overlaps found;
 };
@@ -65,20 +69,16 @@ static double distance_squared(const double x[3], const double y[3])
            (x[2] - y[2]) * (x[2] - y[2]);
 }
 
-/* j overlaps, and is on that level; of a pair on one level the later one looks. */
-static void meet(
-    const struct generate_grid *grid, struct look *look, const struct level *level, int64_t j)
+static void meet(struct look *look, const struct elements_host *e, int64_t j)
 {
-    double r = grid->e->radius[j], sum = look->radius + r;
-    bool is_own = look->i >= 0 && level->exponent == level_of(look->radius);
-    if (level_of(r) != level->exponent || (is_own && j >= look->i)) return;
-    double depth = sum - sqrt(distance_squared(look->x, grid->e->x + 3 * j)),
-           share = depth / fmin(look->radius, r);
-    if (!(depth > 1e-12 * sum)) return; /* they touch at most */
+    double r = e->radius[j], sum = look->radius + r, least = fmin(look->radius, r),
+           distance = sqrt(distance_squared(look->x, e->x + 3 * j)), depth = sum - distance;
     struct generate_overlaps *found = &look->found;
+    if (!(depth > 1e-12 * sum)) return; /* they touch at most */
+    if (distance < coincidence * least && (look->same < 0 || j < look->same)) look->same = j;
     found->n++;
-    if (!(share > found->share)) return;
-    found->share = share;
+    if (!(depth / least > found->share)) return;
+    found->share = depth / least;
     found->depth = depth;
     found->element[0] = look->i < j ? look->i : j;
     found->element[1] = look->i < j ? j : look->i;
@@ -93,7 +93,8 @@ static void look_in_cell(const struct generate_grid *grid, struct look *look,
         double sum = look->radius + e->radius[j], at[3];
         if (!(distance_squared(look->x, e->x + 3 * j) < sum * sum)) continue;
         cell_of(level, e->x + 3 * j, at);
-        if (!memcmp(at, cell, sizeof at)) meet(grid, look, level, j);
+        if (level_of(e->radius[j]) == level->exponent && !memcmp(at, cell, sizeof at))
+            meet(look, e, j);
     }
 }
 
@@ -110,7 +111,9 @@ static void look_on_level(
     }
     /* a large sphere among small ones, few, or so far away that cells cannot be counted */
     if (!is_near || !(n <= (double)grid->e->n)) {
-        for (int64_t j = 0; j < grid->e->n; j++) meet(grid, look, level, j);
+        for (int64_t j = 0; j < grid->e->n; j++)
+            if (grid->next[j] != NOT_THERE && level_of(grid->e->radius[j]) == level->exponent)
+                meet(look, grid->e, j);
         return;
     }
     for (cell[2] = low[2]; cell[2] <= high[2]; cell[2]++)
@@ -161,25 +164,42 @@ static struct level *level_for(struct generate_grid *grid, double radius)
     return &grid->level[l];
 }
 
-struct generate_grid *generate_grid_create(const struct scene *scene, const struct elements_host *e)
+static int descending(const void *a, const void *b)
+{
+    return ((const struct level *)b)->exponent - ((const struct level *)a)->exponent;
+}
+
+/* For these elements, none of which is there yet. */
+static struct generate_grid *create(const struct scene *scene, const struct elements_host *e)
 {
     struct generate_grid *grid = fail_alloc(sizeof *grid);
     *grid = (struct generate_grid){.scene = scene, .e = e, .mask = 1};
     while (grid->mask < (uint64_t)e->n) grid->mask *= 2;
     grid->head = fail_alloc(grid->mask * sizeof *grid->head);
     grid->next = fail_alloc((size_t)e->n * sizeof *grid->next);
-    for (uint64_t h = 0; h < grid->mask; h++) grid->head[h] = -1;
+    for (uint64_t h = 0; h < grid->mask; h++) grid->head[h] = LAST;
     grid->mask--;
-    for (int64_t i = 0; i < e->n; i++)
-        grid->largest = fmax(grid->largest, level_for(grid, e->radius[i])->largest);
     for (int64_t i = 0; i < e->n; i++) {
-        const struct level *level = level_for(grid, e->radius[i]);
-        double cell[3];
-        cell_of(level, e->x + 3 * i, cell);
-        uint64_t h = hash(grid, level->exponent, cell);
-        grid->next[i] = grid->head[h];
-        grid->head[h] = i;
+        grid->largest = fmax(grid->largest, level_for(grid, e->radius[i])->largest);
+        grid->next[i] = NOT_THERE;
     }
+    if (e->n > 0) qsort(grid->level, (size_t)grid->n_level, sizeof *grid->level, descending);
+    return grid;
+}
+
+static void add(struct generate_grid *grid, const struct level *level, int64_t i)
+{
+    double cell[3];
+    cell_of(level, grid->e->x + 3 * i, cell);
+    uint64_t h = hash(grid, level->exponent, cell);
+    grid->next[i] = grid->head[h];
+    grid->head[h] = i;
+}
+
+struct generate_grid *generate_grid_create(const struct scene *scene, const struct elements_host *e)
+{
+    struct generate_grid *grid = create(scene, e);
+    for (int64_t i = 0; i < e->n; i++) add(grid, level_for(grid, e->radius[i]), i);
     return grid;
 }
 
@@ -194,19 +214,33 @@ void generate_grid_free(struct generate_grid *grid)
 
 bool generate_grid_is_free(const struct generate_grid *grid, const double x[3], double radius)
 {
-    struct look look = {.i = -1, .radius = radius};
+    struct look look = {.i = -1, .same = -1, .radius = radius};
     look_with_images(grid, &look, x);
     return look.found.n == 0;
 }
 
+static void note_same(struct generate_overlaps *found, int64_t i, int64_t j)
+{
+    if (found->n_same < GENERATE_NAMED) {
+        found->same[found->n_same][0] = i < j ? i : j;
+        found->same[found->n_same][1] = i < j ? j : i;
+    }
+    found->n_same++;
+}
+
 struct generate_overlaps generate_overlaps(const struct scene *scene, const struct elements_host *e)
 {
-    struct generate_grid *grid = generate_grid_create(scene, e);
-    struct look look = {.found = {0, 0, 0, {-1, -1}}};
-    for (look.i = 0; look.i < e->n; look.i++) {
-        look.radius = e->radius[look.i];
-        look_with_images(grid, &look, e->x + 3 * look.i);
-    }
+    struct generate_grid *grid = create(scene, e);
+    struct look look = {.found = {.element = {-1, -1}}};
+    for (int l = 0; l < grid->n_level; l++)
+        for (look.i = 0; look.i < e->n; look.i++) {
+            look.radius = e->radius[look.i];
+            if (level_of(look.radius) != grid->level[l].exponent) continue;
+            look.same = -1;
+            look_with_images(grid, &look, e->x + 3 * look.i);
+            if (look.same >= 0) note_same(&look.found, look.i, look.same);
+            else add(grid, &grid->level[l], look.i);
+        }
     generate_grid_free(grid);
     return look.found;
 }

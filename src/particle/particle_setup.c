@@ -44,8 +44,7 @@ static void set_parameters(struct sim *s, struct launch *launch, struct buffer *
         wall ? (s->scene->n_wall ? s->scene->wall[0].material : 0) : run->first->material[0];
     int width = run->features.sizes ? MATERIAL_WIDTH : PARAMETER_WIDTH;
     double *row = fail_alloc((size_t)n_row * (size_t)width * sizeof *row);
-    double r = run->first->radius[0],
-           m = 4.0 / 3.0 * M_PI * r * r * r * s->scene->material[run->first->material[0]].density;
+    double r = run->first->radius[0], m = scene_mass(s->scene, run->first->material[0], r);
     for (int k = 0; k < n_row; k++) {
         int a = by_table ? k / n : run->first->material[0], b = by_table ? k % n : first_b;
         if (run->features.sizes) contact_table_material(s->scene, a, b, row + k * width);
@@ -75,8 +74,7 @@ static void set_step(struct sim *s, double dt)
 static void set_motion(struct sim *s, struct launch *launch)
 {
     struct particle_run *run = s->particle;
-    double r = run->first->radius[0],
-           m = 4.0 / 3.0 * M_PI * r * r * r * s->scene->material[run->first->material[0]].density;
+    double r = run->first->radius[0], m = scene_mass(s->scene, run->first->material[0], r);
     launch_set_real_if(launch, "radius", r);
     launch_set_real_if(launch, "inverse_m", 1 / m);
     launch_set_vector(launch, "gravity", s->scene->gravity);

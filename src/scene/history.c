@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/files.h"
 #include "comm/fail.h"
 
 static const double two_pi = 6.283185307179586;
@@ -144,7 +145,7 @@ static char *read_lines(struct history *table, const char *name, FILE *file)
 
 char *history_read(struct history *table, const char *name)
 {
-    FILE *file = fopen(name, "r");
+    FILE *file = files_input(name);
     table->n_point = 0;
     if (!file) return fail_format("%s: %s", name, strerror(errno));
     char *problem = read_lines(table, name, file);

@@ -1,5 +1,6 @@
 #include "stl_file.h"
 
+#include "base/files.h"
 #include "comm/fail.h"
 
 #include <errno.h>
@@ -24,7 +25,7 @@ static double *soup_add(struct stl_soup *soup)
 
 static unsigned char *read_whole(const char *path, size_t *size, char **error)
 {
-    FILE *file = fopen(path, "rb");
+    FILE *file = files_input(path);
     if (!file) {
         *error = fail_format("%s: %s", path, strerror(errno));
         return NULL;

@@ -229,7 +229,7 @@ static void test_overlaps(void **unused)
             for (int a = 0; a < 3; a++)
                 x[3 * i + a] = scratch_random(&state, 0, scene.domain.max[a]);
         }
-        struct generate_overlaps expected = {0, 0, 0, {-1, -1}},
+        struct generate_overlaps expected = {.element = {-1, -1}},
                                  found = generate_overlaps(&scene, &e);
         for (int i = 0; i < N; i++)
             for (int j = 0; j < i; j++) {
@@ -244,7 +244,10 @@ static void test_overlaps(void **unused)
                 if (!(depth > 0)) continue;
                 expected.n++;
                 if (!(share > expected.share)) continue;
-                expected = (struct generate_overlaps){expected.n, share, depth, {j, i}};
+                expected.share = share;
+                expected.depth = depth;
+                expected.element[0] = j;
+                expected.element[1] = i;
             }
         assert_true(expected.n > 100);
         assert_int_equal(found.n, expected.n);

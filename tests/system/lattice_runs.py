@@ -319,7 +319,9 @@ class Lattice(parallel_runs.Case):
         for ranks in (1, 3):
             run = self.run_scene(self.put(over), ranks, "--steps", "2000")
             self.assertEqual(run.code, 5, run.err)
-            self.assertRegex(run.err, r"step \d+, t = \S+ s: the energy is not a number, or too large")
+            self.assertRegex(
+                run.err, r"step \d+, t = \S+ s: the energy is not a number, or too large"
+            )
             self.assertNotIn("nan", run.series()["energy.csv"])
             self.assertEqual(run.record()["exit"], 5)
 

@@ -43,9 +43,10 @@ class Counters(parallel_runs.Case):
                 self.assertGreater(ghosts, 0)
                 # position and radius, velocity and mass, spin and material; kicks of velocity
                 # and of spin, float4 each, where contacts are damped
-                rows = [12 * word + kicks for kicks in (0, 16, 32)]
-                self.assertIn(0, [ghosts % row for row in rows])
-                self.assertLess(ghosts / steps["steps"], record["elements"] * rows[-1] * ranks)
+                features = record["features"]
+                row = 12 * word + 16 * (features["kick"] + features["spin_kick"])
+                self.assertEqual(ghosts % row, 0)
+                self.assertLess(ghosts / steps["steps"], record["elements"] * row * ranks)
                 self.assertLessEqual(steps["from_device"], 1.5 * ranks * steps["steps"])
                 self.assertLessEqual(steps["to_device"], ranks * steps["steps"])
 

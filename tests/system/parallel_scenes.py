@@ -9,6 +9,7 @@ import os
 import yaml
 
 from scene_parts import (
+    bonded_hertz,
     FRICTION,
     HERTZ,
     LINEAR,
@@ -74,12 +75,7 @@ def column(cases):
 
 def hertz(cases):
     """Sizes 1 to 4 on a wavy mesh in a cylinder, Hertz, rolling springs, bonds."""
-    contact = {
-        "normal": HERTZ,
-        "tangential": {"damping_ratio": 0.2, "friction": 0.4},
-        "rolling": {"model": "epsd", "friction": 0.1, "damping_ratio": 0.3},
-        "binding": {"force": 2e-3},
-    }
+    contact = bonded_hertz()
     walls = [
         {"name": "sheet", "surface": {"stl": "sheet.stl"}},
         {

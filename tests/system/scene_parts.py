@@ -15,6 +15,16 @@ EVERYTHING = [
 ]
 
 
+def bonded_hertz():
+    """A contact with every part but CDT rolling: Hertz, friction, rolling springs, bonds."""
+    return {
+        "normal": HERTZ,
+        "tangential": {"damping_ratio": 0.2, "friction": 0.4},
+        "rolling": {"model": "epsd", "friction": 0.1, "damping_ratio": 0.3},
+        "binding": {"force": 2e-3},
+    }
+
+
 def scene(steps, dt, contact, elements, walls=(), materials=None, measure=(), observe=5, **more):
     """A scene of glass elements and steel walls with one contact law; frames at both ends,
     measures `observe` times."""

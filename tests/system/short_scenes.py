@@ -1,5 +1,16 @@
 """Scenes with every feature and few elements, for runs of a few steps."""
-from scene_parts import FRICTION, HERTZ, LINEAR, box, scene, sheet_stl, shutters, stl, touching_csv
+from scene_parts import (
+    bonded_hertz,
+    FRICTION,
+    HERTZ,
+    LINEAR,
+    box,
+    scene,
+    sheet_stl,
+    shutters,
+    stl,
+    touching_csv,
+)
 
 
 def few(cases):
@@ -52,12 +63,7 @@ def mixed(cases):
     """The same with Hertz, sizes and materials, rolling springs, bonds, a box and a tube, the
     account of energy; some leave the domain."""
     dt = 1e-5
-    contact = {
-        "normal": HERTZ,
-        "tangential": {"damping_ratio": 0.2, "friction": 0.4},
-        "rolling": {"model": "epsd", "friction": 0.1, "damping_ratio": 0.3},
-        "binding": {"force": 2e-3},
-    }
+    contact = bonded_hertz()
     walls = [
         box("room", (-0.0028, -0.0028, 0.0002), (1, 1, 1)),
         {
