@@ -56,7 +56,7 @@ static struct lattice_cells *make(struct lattice_options *o, struct link_materia
     for (int k = 0; k < 4; k++)
         strength[k] = (struct link_strength){(4 + 2 * k) * 1e5, (10 - 2 * k) * 1e5, k % 3, 0};
     for (int k = 0; k < 2 && WITH_PRINCIPAL; k++)
-        strength[k] = (struct link_strength){HUGE_VAL, HUGE_VAL, 0, (2 + k) * 1e5};
+        strength[k] = (struct link_strength){HUGE_VAL, HUGE_VAL, 0, (2 + k) * 5e4};
     o->strength = WITH_BREAK ? strength : NULL;
     for (int a = 0; a < 3; a++) o->gravity[a] = WITH_GRAVITY ? gravity[a] : 0;
     struct lattice_cells *c =
