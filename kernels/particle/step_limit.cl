@@ -9,38 +9,13 @@
  * lint: WITH_TANGENTIAL_DAMPING requires WITH_TANGENTIAL
  * lint: WITH_TRIANGLE requires WITH_WALLS
  * lint: WITH_MATERIALS requires WITH_SPIN */
-#include "element.h"
+#include "limit_element.h"
 #include "contact/law_wall.h"
 #include "wall_pose.h"
 #include "contact/contact_memory.h"
 #include "contact/law_limit.h"
 
 #define GROUP 64
-
-/* One element as the bound needs it. */
-struct limit_element {
-    pvec3 x;
-    vec3 v;
-    real w, r; /* 1/m, radius */
-    int kind;  /* material */
-};
-
-LAW struct limit_element limit_element_load(
-    __global const preal *position, __global const real *motion, int e, int kind)
-{
-    struct limit_element a;
-    preal4 x = LOAD_POSITION(e);
-    real4 v = LOAD_VELOCITY(e);
-    a.x = XYZ(x);
-    a.v = VXYZ(v);
-    a.w = v.s3;
-    a.r = (real)x.s3;
-    a.kind = kind;
-#if WITH_MATERIALS
-    a.kind = (int)motion[(size_t)e * MOTION_STRIDE + SPIN_AT + 3];
-#endif
-    return a;
-}
 
 /* D: from the centre to the partner's centre. */
 LAW struct limit_sums limit_add_pair(struct limit_sums s, struct limit_element a,

@@ -217,7 +217,7 @@ static void report_broken(struct sim *s, struct report *r)
     report_end(r);
 }
 
-static void report_energy(struct sim *s, struct report *r, bool observed)
+static void report_state(struct sim *s, struct report *r, bool observed)
 {
     struct lattice_energy now = s->lattice->energy_start;
     bool by_work = s->lattice->lattice->features.energy;
@@ -256,6 +256,6 @@ const struct step_ops lattice_ops = {
     .n_owned = owned,
     .count = count,
     .report_features = report_features,
-    .report_energy = report_energy,
+    .report_state = report_state,
     .launches = launches,
 };

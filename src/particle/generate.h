@@ -8,6 +8,7 @@
 
 #include <stdint.h>
 
+struct wall_pose;
 struct walls;
 
 /* Pairs of elements that overlap, periodic images included, and the one that does so most; elements
@@ -54,8 +55,12 @@ struct generate_overlaps generate_overlaps(
 /* [m]; infinity if there are none. */
 double generate_smallest_radius(const struct elements_host *elements);
 
-/* Checks the start against the walls that are there at t = 0: an element must not be behind a plane
- * or within a rod, nor deeper than half its radius in any other wall. Names the first three and
+/* How many of n spheres, x [n][3] [m], are inside wall w at its pose: behind a plane or within a
+ * rod, or deeper than half their radius in any other wall; is_in [n]: which. */
+int64_t generate_in_wall(const struct walls *walls, int w, const struct wall_pose *pose, int64_t n,
+    const double *x, const double *radius, bool *is_in);
+/* Checks the start against the walls that are there at t = 0: no element may be inside one.
+ * Names the first three and
  * counts the rest. */
 void generate_check_walls(const struct scene *scene, const struct walls *walls,
     const struct elements_host *elements, struct scene_errors *errors);

@@ -142,32 +142,45 @@ static bool is_in_wall(const struct walls *walls, const struct bvh *bvh, int w,
     return probe.is_behind || probe.depth > 0.5 * radius;
 }
 
+int64_t generate_in_wall(const struct walls *walls, int w, const struct wall_pose *pose, int64_t n,
+    const double *x, const double *radius, bool *is_in)
+{
+    bool is_finite = walls->wall[w].kind != SURFACE_PLANE && walls->wall[w].kind != SURFACE_BOX;
+    int64_t n_in = 0;
+    struct bvh *bvh =
+        is_finite ? bvh_create(walls->low + 3 * walls->first[w], walls->high + 3 * walls->first[w],
+                        walls->first[w + 1] - walls->first[w])
+                  : NULL;
+    for (int64_t i = 0; i < n; i++) {
+        is_in[i] = is_in_wall(walls, bvh, w, pose, x + 3 * i, radius[i]);
+        n_in += is_in[i];
+    }
+    bvh_free(bvh);
+    return n_in;
+}
+
 void generate_check_walls(const struct scene *scene, const struct walls *walls,
     const struct elements_host *e, struct scene_errors *errors)
 {
     struct wall_pose *pose = fail_alloc((size_t)walls->n_wall * sizeof *pose);
+    bool *is_in = fail_alloc((size_t)e->n * sizeof *is_in);
     int64_t n_in = 0;
     walls_poses(walls, 1e-9, 0, 1, pose); /* places at t = 0 do not depend on the step */
     for (int w = 0; w < walls->n_wall; w++) {
         if (!pose[w].active) continue;
-        bool is_finite = walls->wall[w].kind != SURFACE_PLANE && walls->wall[w].kind != SURFACE_BOX;
-        struct bvh *bvh = is_finite ? bvh_create(walls->low + 3 * walls->first[w],
-                                          walls->high + 3 * walls->first[w],
-                                          walls->first[w + 1] - walls->first[w])
-                                    : NULL;
+        generate_in_wall(walls, w, pose + w, e->n, e->x, e->radius, is_in);
         for (int64_t i = 0; i < e->n; i++) {
             const double *x = e->x + 3 * i;
-            if (!is_in_wall(walls, bvh, w, pose + w, x, e->radius[i])) continue;
-            if (n_in++ < GENERATE_NAMED)
-                scene_errors_add(errors,
-                    "%s:%d: element %lld of group '%s' at (%g, %g, %g) is inside wall '%s'",
-                    scene->path, walls->wall[w].line, (long long)i, group_name(scene, e, i), x[0],
-                    x[1], x[2], walls->wall[w].name);
+            if (!is_in[i] || n_in++ >= GENERATE_NAMED) continue;
+            scene_errors_add(errors,
+                "%s:%d: element %lld of group '%s' at (%g, %g, %g) is inside wall '%s'",
+                scene->path, walls->wall[w].line, (long long)i, group_name(scene, e, i), x[0], x[1],
+                x[2], walls->wall[w].name);
         }
-        bvh_free(bvh);
     }
     if (n_in > GENERATE_NAMED)
         scene_errors_add(errors, "%s: and %lld more elements are inside walls", scene->path,
             (long long)(n_in - GENERATE_NAMED));
+    free(is_in);
     free(pose);
 }

@@ -49,7 +49,7 @@ static char *options_of(const struct features *features)
 struct limit *limit_create(struct sim *s)
 {
     struct particle_run *run = s->particle;
-    static const char *const sources[] = {"step_limit.cl", NULL};
+    static const char *const sources[] = {"step_limit.cl", "overlap.cl", NULL};
     struct limit *limit = fail_alloc(sizeof *limit);
     char *options = options_of(&run->features);
     limit->program = program_build(s->dev, s->comm, "limit", options, sources);
@@ -63,6 +63,16 @@ struct limit *limit_create(struct sim *s)
     launch_set_int(limit->launch, "kind", run->first->n > 0 ? run->first->material[0] : 0);
     launch_set_vector_if(limit->launch, "period", run->period);
     return limit;
+}
+
+const struct program *limit_program(const struct limit *limit)
+{
+    return limit->program;
+}
+
+const struct buffer *limit_table(const struct limit *limit)
+{
+    return &limit->table;
 }
 
 void limit_free(struct limit *limit)

@@ -7,7 +7,9 @@
 #include "generate.h"
 #include "scene/scene.h"
 
+struct buffer;
 struct device;
+struct program;
 struct sim;
 struct walls;
 struct limit;
@@ -26,6 +28,9 @@ void limit_free(struct limit *limit);
  * law_limit.h. A step up to the result is safe if it is not below dt. The same on any number of
  * ranks. Collective. */
 struct limit_result limit_run(struct sim *s, double dt, double share);
+/* The program, which has the kernels of overlap.cl too, and its table of materials. */
+const struct program *limit_program(const struct limit *limit);
+const struct buffer *limit_table(const struct limit *limit);
 /* The share that suits the scene's beds; 1 without friction. */
 double limit_best_share(const struct scene *scene);
 
@@ -43,7 +48,8 @@ double limit_speed(
 double limit_dense(const struct scene *scene, const struct elements_host *elements, double speed);
 
 /* What speaks against the step dt [s] besides stability, one text each: too few steps per contact,
- * per radius, per range of a bond. */
+ * per radius, per range of a bond; and overlaps
+ * that the scene's weights and speeds allow. */
 void limit_warnings(const struct scene *scene, const struct elements_host *elements, double speed,
     double dt, struct scene_errors *warnings);
 

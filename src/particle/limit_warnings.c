@@ -8,6 +8,9 @@
 /* Accuracy: steps per contact, share of the smallest radius and of the range of a bond per step. */
 #define CONTACT_STEPS 20
 #define SHARE 0.1
+/* Overlap over the smaller radius that a scene may allow without a warning. Speeds are bounds: what
+ * a run shows is watched with a sharper one (overlap.h). */
+#define DEEP 0.75
 
 /* Extent of elements, walls and domain [m]. */
 static void extent(const struct scene *scene, const struct walls *walls,
@@ -57,12 +60,63 @@ double limit_speed(
            wall;
 }
 
+/* A contact and how deep it may get. */
+struct deepest {
+    double share, depth; /* [1] of the smaller radius; [m] */
+    int a, b;            /* material; of the other element, or the wall */
+    bool is_wall;
+};
+
 /* The two ends, the shortest contact and the shortest range over its bond's crossing, as the loop
  * finds them. */
 struct worst {
     double contact;                 /* [s] shortest contact of a pair or with a wall */
     double bond, range, bond_speed; /* [s] shortest crossing, [m], [m/s] */
+    struct deepest deepest;
 };
+
+/* Overlap at which the spring holds what comes with `speed` and goes on being pulled by gravity g:
+ * k d^2/2, for Hertz (2/5) K d^(5/2), is m v^2/2 + m g d. The next d from the one before rises to
+ * the root from below. */
+static double depth_of(
+    struct contact_material m, struct limit_ends ends, double m_star, double speed, double g)
+{
+    bool is_hertz = material_is_hertz(m);
+    double k = is_hertz ? 0.4 * m.k_n * sqrt(limit_r_star(ends)) : 0.5 * m.k_n, depth = 0, before;
+    do {
+        before = depth;
+        depth = pow(m_star * (0.5 * speed * speed + g * before) / k, is_hertz ? 0.4 : 0.5);
+    } while (depth > before * (1 + 1e-6));
+    return depth;
+}
+
+static void look_how_deep(struct deepest *deepest, const struct scene *scene,
+    const struct limit_class *c, const struct limit_class *p, int wall, double speed)
+{
+    int b = p ? p->material : scene->wall[wall].material;
+    struct contact_material m = limit_material_of(scene, c->material, b);
+    struct limit_ends ends = {c->w, p ? p->w : 0, c->r, p ? p->r : 0};
+    if (!(m.k_n > 0)) return;
+    double depth = depth_of(m, ends, 1 / (ends.w_i + ends.w_j), speed, length(scene->gravity));
+    double share = depth / (p ? fmin(c->r, p->r) : c->r);
+    if (share > deepest->share)
+        *deepest = (struct deepest){share, depth, c->material, p ? b : wall, !p};
+}
+
+static void warn_how_deep(
+    const struct deepest *d, const struct scene *scene, double speed, struct scene_errors *warnings)
+{
+    if (!(d->share > DEEP)) return;
+    scene_errors_add(warnings,
+        "%s of material '%s' and %s '%s' may overlap by %.3g m, %.3g of the smaller radius, under "
+        "their weight and at %.3g m/s, the largest relative speed that this scene allows; %s",
+        d->is_wall ? "particles" : "two particles,", scene->material[d->a].name,
+        d->is_wall ? "wall" : "material",
+        d->is_wall ? scene->wall[d->b].name : scene->material[d->b].name, d->depth, d->share, speed,
+        d->share < 1 ? "contact laws are for small overlaps"
+        : d->is_wall ? "above 1 they pass the wall"
+                     : "above 1 they pass each other");
+}
 
 /* Half a period of two bodies of effective mass m on their spring: linear pi (m/k)^(1/2); Hertz
  * 2.943 delta/v with k = 1.5 K delta^(1/2) and (2/5) K delta^(5/2) = m v^2/2 is 4.03 (m/k)^(1/2). A
@@ -93,19 +147,24 @@ void limit_warnings(const struct scene *scene, const struct elements_host *eleme
 {
     int n_class;
     struct limit_class *all = limit_classes(scene, elements, &n_class);
-    struct worst worst = {HUGE_VAL, HUGE_VAL, 0, 0};
+    struct worst worst = {.contact = HUGE_VAL, .bond = HUGE_VAL};
     double r = HUGE_VAL;
     for (int c = 0; c < n_class; c++) {
         r = fmin(r, all[c].r);
         for (int p = 0; p <= c; p++)
-            if (p != c || all[c].n > 1)
+            if (p != c || all[c].n > 1) {
                 look(&worst, scene, &all[c], &all[p],
                     limit_material_of(scene, all[c].material, all[p].material), speed);
-        for (int w = 0; w < scene->n_wall; w++)
+                look_how_deep(&worst.deepest, scene, &all[c], &all[p], -1, speed);
+            }
+        for (int w = 0; w < scene->n_wall; w++) {
+            look_how_deep(&worst.deepest, scene, &all[c], NULL, w, speed);
             look(&worst, scene, &all[c], NULL,
                 limit_material_of(scene, all[c].material, scene->wall[w].material), speed);
+        }
     }
     free(all);
+    warn_how_deep(&worst.deepest, scene, speed, warnings);
     if (worst.contact < CONTACT_STEPS * dt)
         scene_errors_add(warnings,
             "the shortest contact lasts %.3g s, %.1f time steps of %.3g s; with fewer than %d "

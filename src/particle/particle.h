@@ -9,6 +9,7 @@
 #include "energy.h"
 #include "ghosts.h"
 #include "limit.h"
+#include "overlap.h"
 #include "owners.h"
 #include "run/sim.h"
 
@@ -34,6 +35,7 @@ struct particle_run {
     struct launch *select_room, *pair_force, *wall_force, *gather, *kick_drift;
     struct buffer table_pair, table_wall;
     struct limit *limit;
+    struct overlap *overlap;
     double skin, horizon;       /* room to move: skin + horizon |v| [m], [s] */
     int64_t built_at;           /* step of the last list build */
     struct cells_bounds bounds; /* of owned elements at the last build */
@@ -95,7 +97,7 @@ void particle_note_removed(struct sim *s, const double x[3]);
 bool particle_digest(struct sim *s, uint64_t *digest);
 void particle_count(const struct sim *s, struct step_counts *counts);
 void particle_report_features(const struct sim *s, struct report *r);
-void particle_report_energy(struct sim *s, struct report *r, bool observed);
+void particle_report_state(struct sim *s, struct report *r, bool observed);
 int particle_launches(const struct sim *s, struct step_launch launch[STEP_LAUNCHES]);
 
 #endif

@@ -41,6 +41,8 @@ void particle_check_limit(struct sim *s)
 {
     struct limit_result limit = particle_limit(s);
     s->limit_at = s->step;
+    overlap_look(s);
+    overlap_warn(s);
     s->dt_limit = s->dt_limit > 0 ? fmin(s->dt_limit, limit.dt) : limit.dt;
     if (s->dt <= limit.dt || s->scene->time.allow_unstable) return;
     output_stop_numerics(s,

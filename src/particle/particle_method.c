@@ -27,6 +27,6 @@ const struct step_ops particle_ops = {
     .n_owned = particle_owned,
     .count = particle_count,
     .report_features = particle_report_features,
-    .report_energy = particle_report_energy,
+    .report_state = particle_report_state,
     .launches = particle_launches,
 };

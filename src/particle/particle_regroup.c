@@ -72,6 +72,39 @@ static void check_inside(struct sim *s, const struct cells_bounds *now)
         (long long)first, x[0], x[1], x[2]);
 }
 
+/* Ends the run if any of the owned elements h, of all ranks, is inside wall k. */
+static void check_free(struct sim *s, const struct particles_host *h, int k)
+{
+    struct particle_run *run = s->particle;
+    const struct wall_pose *pose = wall_contacts_pose(run->wall_contacts, s->step) + k;
+    bool *is_in = fail_alloc((size_t)h->n * sizeof *is_in);
+    int64_t gid = INT64_MAX,
+            n = generate_in_wall(run->walls, k, pose, h->n, h->x, h->radius, is_in);
+    for (int64_t i = 0; i < h->n; i++)
+        if (is_in[i] && h->gid[i] < gid) gid = h->gid[i];
+    free(is_in);
+    comm_sum_i64(s->comm, &n, 1);
+    comm_min_i64(s->comm, &gid, 1);
+    if (n == 0) return;
+    output_stop_numerics(s, "element %lld is inside wall '%s', which appears (%lld in all)",
+        (long long)gid, s->scene->wall[k].name, (long long)n);
+}
+
+/* Walls that the lists of before do not have, because they appear now, have to find their place
+ * free, as at the start. */
+static void check_appearing(struct sim *s)
+{
+    struct particle_run *run = s->particle;
+    const struct wall_contacts *w = run->wall_contacts;
+    struct particles_host *h = NULL;
+    for (int k = 0; w && run->features.timed && k < run->walls->n_wall; k++) {
+        if (!wall_contacts_pose(w, s->step)[k].active || w->room_host[k] >= 0) continue;
+        if (!h) h = particles_download(run->particles, &run->features, s->scene, run->first);
+        check_free(s, h, k);
+    }
+    particles_host_free(h);
+}
+
 /* Room to move until the next build, from the velocities of now. */
 static void make_room(struct sim *s)
 {
@@ -179,7 +212,10 @@ void particle_regroup(struct sim *s)
     if (run->features.energy) energy_collect(s);
     adapt_skin(s, generate_smallest_radius(s->particle->first));
     if (run->wall_contacts) wall_contacts_set_step(run->wall_contacts, s->step);
+    check_appearing(s);
+    overlap_look_behind(s);
     deal(s, &now);
+    overlap_look(s);
     s->n_rebuild++;
     balance_write(s->balance, (double)s->step * s->dt);
     balance_go_on(s->balance, &s->timers, s->step);

@@ -67,7 +67,7 @@ void particle_report_features(const struct sim *s, struct report *r)
     record_features(r, features_table, &s->particle->features);
 }
 
-void particle_report_energy(struct sim *s, struct report *r, bool observed)
+void particle_report_state(struct sim *s, struct report *r, bool observed)
 {
     struct particle_run *run = s->particle;
     struct energy_sums now = run->energy_start;
@@ -75,6 +75,7 @@ void particle_report_energy(struct sim *s, struct report *r, bool observed)
     if (observed) energy_now(s, &now);
     energy_terms_report(energy_table, r, &run->energy_start, &now, measured, measured && observed);
     report_numbers(r, "momentum", now.momentum, 3);
+    overlap_report(s, r, observed);
 }
 
 int particle_launches(const struct sim *s, struct step_launch launch[STEP_LAUNCHES])

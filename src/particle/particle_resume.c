@@ -137,6 +137,7 @@ void particle_resume(struct sim *s)
     frame_table_free(&elements);
     particle_bind(s);
     run->limit = limit_create(s);
+    run->overlap = overlap_create(s);
     restore_left(s);
     restore_energy(s);
     balance_restart(s->balance);

@@ -144,6 +144,7 @@ static void start(struct sim *s)
     particle_build(s);
     particle_bind(s);
     run->limit = limit_create(s);
+    run->overlap = overlap_create(s);
     if (s->comm->n_rank > 1) particle_cut(s); /* now that interactions are known */
     /* its kernels are compiled before the clock runs, and what starts outside leaves at once */
     particle_regroup(s);
@@ -198,6 +199,7 @@ void particle_free(struct sim *s)
     struct program *program[] = {run->program_lists, run->program_pair, run->program_wall,
         run->program_body, run->program_assign};
     if (run->ghosts) exchange_settle(&run->ghosts->exchange);
+    overlap_free(run->overlap);
     limit_free(run->limit);
     energy_free(run->energy);
     assigned_free(run->assigned);

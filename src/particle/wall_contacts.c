@@ -97,6 +97,19 @@ void wall_contacts_free(struct wall_contacts *w)
     free(w);
 }
 
+void wall_contacts_pose_row(const struct wall_pose *pose, double *row)
+{
+    memcpy(row, pose->rotation, sizeof pose->rotation);
+    memcpy(row + 9, pose->translation, sizeof pose->translation);
+    memcpy(row + 12, pose->velocity, sizeof pose->velocity);
+    memcpy(row + 15, pose->spin, sizeof pose->spin);
+    memcpy(row + 18, pose->centre, sizeof pose->centre);
+    row[21] = pose->active;
+    memcpy(row + 22, pose->velocity_end, sizeof pose->velocity_end);
+    memcpy(row + 25, pose->spin_end, sizeof pose->spin_end);
+    memcpy(row + 28, pose->centre_end, sizeof pose->centre_end);
+}
+
 /* The batch that has the step. Batches begin at the same steps whenever the run itself began. */
 static void new_batch(struct wall_contacts *w, int64_t step, bool upload)
 {
@@ -110,19 +123,7 @@ static void new_batch(struct wall_contacts *w, int64_t step, bool upload)
         free(row);
         return;
     }
-    for (size_t i = 0; i < n; i++) {
-        const struct wall_pose *p = &w->poses[i];
-        double *r = row + i * POSE_WIDTH;
-        memcpy(r, p->rotation, sizeof p->rotation);
-        memcpy(r + 9, p->translation, sizeof p->translation);
-        memcpy(r + 12, p->velocity, sizeof p->velocity);
-        memcpy(r + 15, p->spin, sizeof p->spin);
-        memcpy(r + 18, p->centre, sizeof p->centre);
-        r[21] = p->active;
-        memcpy(r + 22, p->velocity_end, sizeof p->velocity_end);
-        memcpy(r + 25, p->spin_end, sizeof p->spin_end);
-        memcpy(r + 28, p->centre_end, sizeof p->centre_end);
-    }
+    for (size_t i = 0; i < n; i++) wall_contacts_pose_row(&w->poses[i], row + i * POSE_WIDTH);
     reals_write(&w->batch, w->features->position_is_float, 0, n * POSE_WIDTH, row);
     free(row);
 }

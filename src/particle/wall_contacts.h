@@ -53,6 +53,8 @@ void wall_contacts_free(struct wall_contacts *w);
 /* Brings the poses of `step` to the device; from step to step in ascending order. Collective when a
  * new batch begins. */
 void wall_contacts_set_step(struct wall_contacts *w, int64_t step);
+/* Its row of POSE_WIDTH numbers (kernels/particle/particle_words.h). */
+void wall_contacts_pose_row(const struct wall_pose *pose, double *row);
 const struct wall_pose *wall_contacts_pose(const struct wall_contacts *w, int64_t step);
 
 /* Candidates for `step`, valid until an element or a wall has used up its room; `horizon_steps`:

@@ -216,7 +216,7 @@ bool record_write(struct sim *s, int exit_code, bool observed)
     add_plain_steps(r, s);
     if (s->options->profile) { add_kernels(r, s); }
     if (s->rest.next > 0) add_rest(r, s);
-    s->ops->report_energy(s, r, observed);
+    s->ops->report_state(s, r, observed);
     report_integer(r, "exit", exit_code);
     report_text(r, "digest", whole ? digest : NULL);
     bool written = report_write(r, s->comm, s->options->dir);

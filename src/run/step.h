@@ -97,8 +97,8 @@ struct step_ops {
     /* of this rank; not collective */
     void (*count)(const struct sim *s, struct step_counts *counts);
     void (*report_features)(const struct sim *s, struct report *r);
-    /* observed: the state is that of a full step. Collective */
-    void (*report_energy)(struct sim *s, struct report *r, bool observed);
+    /* energies, and what contacts did; observed: the state is that of a full step. Collective */
+    void (*report_state)(struct sim *s, struct report *r, bool observed);
     /* the kernels of a step, of this rank; returns how many */
     int (*launches)(const struct sim *s, struct step_launch launch[STEP_LAUNCHES]);
 };
