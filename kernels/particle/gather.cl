@@ -45,21 +45,75 @@ LAW void gather_add(__global const real *r, uint is_down, real4 *f, real4 *t)
     }
 }
 
+/* What both kernels move an element with: their last parameters, and move_element's. */
+#if WITH_SIZES
+#define SIZE_PARAMETERS
+#define SIZE_ARGUMENTS
+#else
+#define SIZE_PARAMETERS real radius, real inverse_m,
+#define SIZE_ARGUMENTS radius, inverse_m,
+#endif
+#if WITH_ORIENTATION
+#define ORIENTATION_PARAMETER __global real *orientation,
+#define ORIENTATION_ARGUMENT orientation,
+#else
+#define ORIENTATION_PARAMETER
+#define ORIENTATION_ARGUMENT
+#endif
+#define STATE_PARAMETERS __global preal *position, __global real *motion,
+#define MOVE_PARAMETERS                                                                            \
+    SIZE_PARAMETERS real gravity_x, real gravity_y, real gravity_z, preal dt, real half_dt,        \
+        real margin_dt, ORIENTATION_PARAMETER __global const preal *reference, __global int *flags
+#define MOVE_ARGUMENTS                                                                             \
+    position, motion, SIZE_ARGUMENTS gravity_x, gravity_y, gravity_z, dt, half_dt, margin_dt,      \
+        ORIENTATION_ARGUMENT reference, flags
+
+/* One or two half kicks of element e by force f [N] and torque t [N m]; then, if it drifts, its
+ * drift, and what the host has to know of its new place. */
+LAW void move_element(
+    int e, real4 f, real4 t, bool twice, bool drifts, STATE_PARAMETERS MOVE_PARAMETERS)
+{
+    preal4 x = LOAD_POSITION(e);
+    real4 v = LOAD_VELOCITY(e), g = (real4)(gravity_x, gravity_y, gravity_z, 0);
+#if WITH_SIZES
+    real radius = (real)x.s3, inverse_m = v.s3;
+#endif
+    (void)radius, (void)t; /* unless something rotates */
+    real4 kick = half_kick(f, inverse_m, g, half_dt);
+    v += kick;
+    if (twice) v += kick;
+    STORE_VELOCITY(e, v);
+    if (WITH_KICK) STORE_KICK(e, kick);
+#if WITH_SPIN
+    real4 w = LOAD_SPIN(e);
+    if (WITH_PAIR_ROTATION || WITH_WALL_ROTATION) {
+        real4 spun = half_spin(t, inverse_m, radius, half_dt);
+        w += spun;
+        if (twice) w += spun;
+        STORE_SPIN(e, w);
+        if (WITH_SPIN_KICK) STORE_SPIN_KICK(e, spun);
+    }
+#endif
+    if (!drifts) return;
+    x = drift(x, v, dt);
+    STORE_POSITION(e, x);
+#if WITH_ORIENTATION
+    vstore4(turn(vload4(e, orientation), w, (real)dt), e, orientation);
+#endif
+    if (is_stale(x, vload4(e, reference), v, margin_dt)) {
+        flags[FLAG_STALE] = 1;
+        real4 sum = f + v;
+        if (!(fabs(sum.s0 + sum.s1 + sum.s2) < (real)1e30)) flags[FLAG_LOST] = 1;
+    }
+}
+
 __kernel __attribute__((reqd_work_group_size(64, 1, 1))) void gather(int n_owned, int observe,
-    __global preal *position, __global real *motion, __global const int *incidence_begin,
-    __global const int *incidence, __global const real *result,
+    STATE_PARAMETERS __global const int *incidence_begin, __global const int *incidence,
+    __global const real *result,
 #if WITH_WALLS
     __global const int *wall_begin, __global const real *wall_result,
 #endif
-#if !WITH_SIZES
-    real radius, real inverse_m,
-#endif
-    real gravity_x, real gravity_y, real gravity_z, preal dt, real half_dt, real margin_dt,
-#if WITH_ORIENTATION
-    __global real *orientation,
-#endif
-    __global real *force, __global real *torque, __global const preal *reference,
-    __global int *flags)
+    __global real *force, __global real *torque, MOVE_PARAMETERS)
 {
     int e = get_global_id(0);
     if (e >= n_owned) return;
@@ -78,87 +132,20 @@ __kernel __attribute__((reqd_work_group_size(64, 1, 1))) void gather(int n_owned
         if (WITH_WALL_ROTATION) t += vload4(1, r);
     }
 #endif
-    preal4 x = LOAD_POSITION(e);
-    real4 v = LOAD_VELOCITY(e), g = (real4)(gravity_x, gravity_y, gravity_z, 0);
-#if WITH_SIZES
-    real radius = (real)x.s3, inverse_m = v.s3;
-#endif
-    (void)radius; /* unless something rotates */
-    real4 kick = half_kick(f, inverse_m, g, half_dt);
-    v += kick;
-    if (!observe) v += kick;
-    STORE_VELOCITY(e, v);
-    if (WITH_KICK) STORE_KICK(e, kick);
-#if WITH_SPIN
-    real4 w = LOAD_SPIN(e);
-    if (WITH_PAIR_ROTATION || WITH_WALL_ROTATION) {
-        real4 spun = half_spin(t, inverse_m, radius, half_dt);
-        w += spun;
-        if (!observe) w += spun;
-        STORE_SPIN(e, w);
-        if (WITH_SPIN_KICK) STORE_SPIN_KICK(e, spun);
-    }
-#endif
+    move_element(e, f, t, !observe, !observe, MOVE_ARGUMENTS);
     if (observe) {
         vstore4(f, e, force);
         if (WITH_SPIN) vstore4(t, e, torque);
-        return;
-    }
-    x = drift(x, v, dt);
-    STORE_POSITION(e, x);
-#if WITH_ORIENTATION
-    vstore4(turn(vload4(e, orientation), w, (real)dt), e, orientation);
-#endif
-    if (is_stale(x, vload4(e, reference), v, margin_dt)) {
-        flags[FLAG_STALE] = 1;
-        real4 sum = f + v;
-        if (!(fabs(sum.s0 + sum.s1 + sum.s2) < (real)1e30)) flags[FLAG_LOST] = 1;
     }
 }
 
 /* First kick and drift after an observed step (force of gather) or at the start. */
 __kernel __attribute__((reqd_work_group_size(64, 1, 1))) void kick_drift(int n_owned,
-    __global preal *position, __global real *motion,
-#if !WITH_SIZES
-    real radius, real inverse_m,
-#endif
-    real gravity_x, real gravity_y, real gravity_z, preal dt, real half_dt, real margin_dt,
-#if WITH_ORIENTATION
-    __global real *orientation,
-#endif
-    __global const real *force, __global const real *torque, __global const preal *reference,
-    __global int *flags)
+    STATE_PARAMETERS __global const real *force, __global const real *torque, MOVE_PARAMETERS)
 {
     int e = get_global_id(0);
     if (e >= n_owned) return;
-    preal4 x = LOAD_POSITION(e);
-    real4 v = LOAD_VELOCITY(e);
-    (void)torque;
-#if WITH_SIZES
-    real radius = (real)x.s3, inverse_m = v.s3;
-#endif
-    (void)radius; /* unless something rotates */
-    real4 kick = half_kick(
-        vload4(e, force), inverse_m, (real4)(gravity_x, gravity_y, gravity_z, 0), half_dt);
-    v += kick;
-    STORE_VELOCITY(e, v);
-    if (WITH_KICK) STORE_KICK(e, kick);
-#if WITH_SPIN
-    real4 w = LOAD_SPIN(e);
-    if (WITH_PAIR_ROTATION || WITH_WALL_ROTATION) {
-        real4 spun = half_spin(vload4(e, torque), inverse_m, radius, half_dt);
-        w += spun;
-        STORE_SPIN(e, w);
-        if (WITH_SPIN_KICK) STORE_SPIN_KICK(e, spun);
-    }
-#endif
-    x = drift(x, v, dt);
-    STORE_POSITION(e, x);
-#if WITH_ORIENTATION
-    vstore4(turn(vload4(e, orientation), w, (real)dt), e, orientation);
-#endif
-    if (is_stale(x, vload4(e, reference), v, margin_dt)) {
-        flags[FLAG_STALE] = 1;
-        if (!(fabs(v.s0 + v.s1 + v.s2) < (real)1e30)) flags[FLAG_LOST] = 1;
-    }
+    real4 t = (real4)(0);
+    if (WITH_PAIR_ROTATION || WITH_WALL_ROTATION) t = vload4(e, torque);
+    move_element(e, vload4(e, force), t, false, true, MOVE_ARGUMENTS);
 }

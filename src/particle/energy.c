@@ -44,10 +44,10 @@ struct energy *energy_create(struct sim *s)
     for (int a = 0; a < 3; a++)
         e->wraps |= run->features.periodic[a] && fabs(s->scene->gravity[a]) > 0;
     if (!s->dev->fp64) return e;
-    char *body = features_options(&run->features, FEATURES_BODY),
-         *options = fail_format("%s -DWITH_SUMS=1", body);
+    char *lists = features_options(&run->features, FEATURES_LISTS),
+         *options = fail_format("%s -DWITH_SUMS=1", lists);
     e->program = program_build(s->dev, s->comm, "sums", options, source);
-    free(body);
+    free(lists);
     free(options);
     e->elements = launch_create(e->program, "sums_elements");
     e->ledger = launch_create(e->program, "sums_ledger");

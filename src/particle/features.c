@@ -115,8 +115,9 @@ struct features features_of(
 }
 
 /* clang-format off */
-#define ROW(member, option) FEATURE_ROW(struct features, member, option)
-#define AXIS_ROW(name, axis, option) {name, option, offsetof(struct features, periodic[axis]), ~0}
+#define ROW(member, option, programs) {#member, option, offsetof(struct features, member), programs}
+#define AXIS_ROW(name, axis, option) \
+    {name, option, offsetof(struct features, periodic[axis]), ~FEATURES_BODY}
 #define LAW_ROW(name, part, member, option, program) \
     {name, option, offsetof(struct features, part.member), program},
 #define PAIR_ROW(member, flag, needed) \
@@ -127,25 +128,25 @@ struct features features_of(
 const struct feature_row features_table[] = {
     {NULL, "REAL_IS_FLOAT", offsetof(struct features, real_is_float), ~0},
     {NULL, "POSITION_IS_FLOAT", offsetof(struct features, position_is_float), ~0},
-    ROW(spin, "WITH_SPIN"),
-    ROW(sizes, "WITH_SIZES"),
-    ROW(materials, "WITH_MATERIALS"),
-    ROW(wall_table, "WITH_TABLE"),
-    {"energy", "WITH_ENERGY", offsetof(struct features, energy), FEATURES_PAIR | FEATURES_WALL},
-    ROW(kick, "WITH_KICK"),
-    ROW(spin_kick, "WITH_SPIN_KICK"),
-    ROW(orientation, "WITH_ORIENTATION"),
+    ROW(spin, "WITH_SPIN", ~0),
+    ROW(sizes, "WITH_SIZES", ~FEATURES_LISTS),
+    ROW(materials, "WITH_MATERIALS", FEATURES_PAIR | FEATURES_WALL),
+    ROW(wall_table, "WITH_TABLE", FEATURES_WALL),
+    ROW(energy, "WITH_ENERGY", FEATURES_PAIR | FEATURES_WALL),
+    ROW(kick, "WITH_KICK", ~0),
+    ROW(spin_kick, "WITH_SPIN_KICK", ~0),
+    ROW(orientation, "WITH_ORIENTATION", FEATURES_BODY),
     AXIS_ROW("periodic_x", 0, "WITH_PERIODIC_X"),
     AXIS_ROW("periodic_y", 1, "WITH_PERIODIC_Y"),
     AXIS_ROW("periodic_z", 2, "WITH_PERIODIC_Z"),
-    ROW(walls, "WITH_WALLS"),
-    ROW(plane, "WITH_PLANE"),
-    ROW(rectangle, "WITH_RECTANGLE"),
-    ROW(cylinder, "WITH_CYLINDER"),
-    ROW(triangle, "WITH_TRIANGLE"),
-    {"moving", "WITH_MOVING", offsetof(struct features, moving), FEATURES_WALL | FEATURES_BODY},
-    ROW(timed, NULL),
-    ROW(remove_outside, NULL),
+    ROW(walls, "WITH_WALLS", FEATURES_WALL | FEATURES_BODY),
+    ROW(plane, "WITH_PLANE", FEATURES_WALL),
+    ROW(rectangle, "WITH_RECTANGLE", FEATURES_WALL),
+    ROW(cylinder, "WITH_CYLINDER", FEATURES_WALL),
+    ROW(triangle, "WITH_TRIANGLE", FEATURES_WALL),
+    ROW(moving, "WITH_MOVING", FEATURES_WALL),
+    ROW(timed, NULL, 0),
+    ROW(remove_outside, NULL, 0),
     CONTACT_FEATURES(PAIR_ROW)
     CONTACT_FEATURES(WALL_ROW)
     {NULL, NULL, 0, 0}};
@@ -155,6 +156,7 @@ const struct feature_row features_table[] = {
 char *features_options(const struct features *f, enum features_program program)
 {
     char *rows = feature_table_options(features_table, f, program);
+    if (program != FEATURES_BODY) return rows;
     char *text = fail_format("%s -DWITH_PAIR_ROTATION=%d -DWITH_PAIR_ROLLING=%d "
                              "-DWITH_WALL_ROTATION=%d",
         rows, rotates(&f->pair), rolls(&f->pair), rotates(&f->wall));

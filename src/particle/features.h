@@ -40,9 +40,15 @@ struct features {
 struct features features_of(
     const struct scene *scene, const struct walls *walls, const struct elements_host *elements);
 
-/* Build options of the program of pairs (FEATURES_PAIR), of walls, or of what moves elements and
- * builds lists; owned by the caller. */
-enum features_program { FEATURES_PAIR = 1, FEATURES_WALL = 2, FEATURES_BODY = 4 };
+/* Build options of the program of pairs (FEATURES_PAIR), of walls, of what moves elements, or of
+ * lists and sums, which know no contact law; owned by the caller. Scenes that differ in what a
+ * program does not ask for share it, compiled once. */
+enum features_program {
+    FEATURES_PAIR = 1,
+    FEATURES_WALL = 2,
+    FEATURES_BODY = 4,
+    FEATURES_LISTS = 8
+};
 char *features_options(const struct features *features, enum features_program program);
 
 extern const struct feature_row features_table[];

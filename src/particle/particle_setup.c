@@ -18,9 +18,10 @@
 enum { HORIZON_STEPS = 60 };
 
 static const char *const source_lists[] = {
-    "scan.cl", "cells.cl", "rows.cl", "pairs.cl", "records.cl", "select.cl", "wall_lists.cl", NULL};
+    "scan.cl", "cells.cl", "rows.cl", "pairs.cl", "records.cl", "select.cl", NULL};
 static const char *const source_pair[] = {"pair_force.cl", "layout.cl", NULL};
-static const char *const source_wall[] = {"wall_keep.cl", "wall_force.cl", "layout.cl", NULL};
+static const char *const source_wall[] = {
+    "wall_lists.cl", "wall_keep.cl", "wall_force.cl", "layout.cl", NULL};
 static const char *const source_body[] = {"gather.cl", NULL};
 static const char *const source_assign[] = {"assign.cl", NULL};
 
@@ -86,12 +87,12 @@ static void set_motion(struct sim *s, struct launch *launch)
 static void create_kernels(struct sim *s)
 {
     struct particle_run *run = s->particle;
-    run->program_lists = build(s, "lists", FEATURES_BODY, source_lists);
+    run->program_lists = build(s, "lists", FEATURES_LISTS, source_lists);
     run->program_pair = build(s, "pairs", FEATURES_PAIR, source_pair);
     run->program_body = build(s, "motion", FEATURES_BODY, source_body);
     run->program_wall = run->features.walls ? build(s, "walls", FEATURES_WALL, source_wall) : NULL;
     if (s->scene->partition.boundary == CUT_PAIRS_ASSIGNED && s->comm->n_rank > 1)
-        run->program_assign = build(s, "assign", FEATURES_BODY, source_assign);
+        run->program_assign = build(s, "assign", FEATURES_LISTS, source_assign);
     run->select_room = launch_create(run->program_lists, "select_room");
     run->pair_force = launch_create(run->program_pair, "pair_force");
     run->wall_force = run->program_wall ? launch_create(run->program_wall, "wall_force") : NULL;
@@ -180,8 +181,7 @@ void particle_setup(struct sim *s)
             .scene = s->scene,
             .walls = run->walls,
             .dt = s->dt,
-            .lists = run->program_lists,
-            .force = run->program_wall});
+            .program = run->program_wall});
     run->energy = energy_create(s);
     run->horizon = HORIZON_STEPS * s->dt;
     if (s->from) particle_resume(s);

@@ -55,13 +55,13 @@ static void upload_walls(struct wall_contacts *w, const struct scene *scene)
 struct wall_contacts *wall_contacts_create(const struct wall_setup *setup)
 {
     struct wall_contacts *w = fail_alloc(sizeof *w);
-    struct device *dev = setup->lists->dev;
+    struct device *dev = setup->program->dev;
     size_t n_wall = (size_t)setup->walls->n_wall;
     w->features = setup->features;
     w->walls = setup->walls;
     w->comm = setup->comm;
     w->dt = setup->dt;
-    w->layout = contact_layout(dev, setup->force);
+    w->layout = contact_layout(dev, setup->program);
     buffers_create(dev, w, own_buffers);
     buffers_create(dev, &w->now, list_buffers);
     buffers_create(dev, &w->old, list_buffers);
@@ -71,11 +71,11 @@ struct wall_contacts *wall_contacts_create(const struct wall_setup *setup)
     w->built = fail_alloc(n_wall * sizeof *w->built);
     w->room_host = fail_alloc(n_wall * sizeof *w->room_host);
     w->batch_first = INT64_MIN / 2;
-    w->rows = launch_create(setup->lists, "wall_rows");
-    w->carry = launch_create(setup->lists, "wall_carry");
-    w->leave = launch_create(setup->lists, "wall_leave");
-    w->copy = launch_create(setup->lists, "pose_copy");
-    w->keep_launch = w->features->triangle ? launch_create(setup->force, "wall_keep") : NULL;
+    w->rows = launch_create(setup->program, "wall_rows");
+    w->carry = launch_create(setup->program, "wall_carry");
+    w->leave = launch_create(setup->program, "wall_leave");
+    w->copy = launch_create(setup->program, "pose_copy");
+    w->keep_launch = w->features->triangle ? launch_create(setup->program, "wall_keep") : NULL;
     launch_bind_buffer(w->copy, "batch", &w->batch);
     launch_bind_buffer(w->copy, "pose", &w->pose);
     launch_set_int(w->copy, "n", w->walls->n_wall * POSE_WIDTH);

@@ -44,8 +44,8 @@ struct wall_setup {
     const struct features *features;
     const struct scene *scene; /* materials of the walls */
     const struct walls *walls;
-    double dt;                           /* [s] */
-    const struct program *lists, *force; /* wall_lists.cl; wall_keep.cl and layout.cl */
+    double dt;                     /* [s] */
+    const struct program *program; /* wall_lists.cl, wall_keep.cl, layout.cl */
 };
 struct wall_contacts *wall_contacts_create(const struct wall_setup *setup);
 void wall_contacts_free(struct wall_contacts *w);

@@ -4,14 +4,14 @@
 
 void lists_open(struct lists *l)
 {
-    static const char *const sources[] = {"scan.cl", "cells.cl", "rows.cl", "pairs.cl",
-        "records.cl", "select.cl", "wall_lists.cl", NULL};
+    static const char *const sources[] = {
+        "scan.cl", "cells.cl", "rows.cl", "pairs.cl", "records.cl", "select.cl", NULL};
     static const char *const force[] = {"layout.cl", NULL};
     double period[3], domain[6] = {0, 0, 0, LISTS_PERIOD, LISTS_PERIOD, LISTS_PERIOD};
     l->features = fixture_features();
     for (int a = 0; a < 3; a++) period[a] = l->features.periodic[a] ? LISTS_PERIOD : 0;
     l->dev = fixture_device();
-    l->program = fixture_program(l->dev, &l->features, FEATURES_BODY, sources);
+    l->program = fixture_program(l->dev, &l->features, FEATURES_LISTS, sources);
     l->force = fixture_program(l->dev, &l->features, FEATURES_PAIR, force);
     l->scan = scan_create(l->dev, l->program);
     l->cells = cells_create(l->dev, &l->features, l->program, period, domain);

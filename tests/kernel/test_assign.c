@@ -245,7 +245,7 @@ int main(void)
     static const char *const sources[] = {"assign.cl", NULL};
     const struct CMUnitTest tests[] = {cmocka_unit_test(pairs_are_assigned)};
     lists_open(&lists);
-    program = fixture_program(lists.dev, &lists.features, FEATURES_BODY, sources);
+    program = fixture_program(lists.dev, &lists.features, FEATURES_LISTS, sources);
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     program_free(program);
     lists_close(&lists);

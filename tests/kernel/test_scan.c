@@ -44,7 +44,7 @@ int main(void)
     const struct CMUnitTest tests[] = {cmocka_unit_test(sums_of_what_stood_before)};
     struct features features = fixture_features();
     dev = fixture_device();
-    struct program *program = fixture_program(dev, &features, FEATURES_BODY, sources);
+    struct program *program = fixture_program(dev, &features, FEATURES_LISTS, sources);
     scan = scan_create(dev, program);
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     scan_free(scan);

@@ -354,7 +354,7 @@ static void histories_follow_their_contacts(void **unused)
 
 int main(int argc, char **argv)
 {
-    static const char *const sources[] = {"wall_keep.cl", "layout.cl", NULL};
+    static const char *const sources[] = {"wall_lists.cl", "wall_keep.cl", "layout.cl", NULL};
     const struct CMUnitTest tests[] = {cmocka_unit_test(candidates_within_reach),
         cmocka_unit_test(one_contact_per_minimum), cmocka_unit_test(friction_goes_over_the_mesh),
         cmocka_unit_test(histories_follow_their_contacts)};
@@ -367,8 +367,7 @@ int main(int argc, char **argv)
         .scene = &scene,
         .walls = walls,
         .dt = dt,
-        .lists = lists.program,
-        .force = force});
+        .program = force});
     assert_int_equal(contacts->layout.history, HISTORY_WIDTH);
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     wall_contacts_free(contacts);
