@@ -59,8 +59,8 @@ double generate_smallest_radius(const struct elements_host *elements);
  * rod, or deeper than half their radius in any other wall; is_in [n]: which. */
 int64_t generate_in_wall(const struct walls *walls, int w, const struct wall_pose *pose, int64_t n,
     const double *x, const double *radius, bool *is_in);
-/* Checks the start against the walls that are there at t = 0: no element may be inside one.
- * Names the first three and
+/* Checks the start against the walls that are there at t = 0: no element may be inside one,
+ * and walls that can be touched across periodic faces repeat there. Names the first three and
  * counts the rest. */
 void generate_check_walls(const struct scene *scene, const struct walls *walls,
     const struct elements_host *elements, struct scene_errors *errors);

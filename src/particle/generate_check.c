@@ -183,4 +183,5 @@ void generate_check_walls(const struct scene *scene, const struct walls *walls,
             (long long)(n_in - GENERATE_NAMED));
     free(is_in);
     free(pose);
+    generate_check_periodic(scene, walls, e, errors);
 }

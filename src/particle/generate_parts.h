@@ -26,6 +26,9 @@ void generate_fill(
     struct generate_list *list, const struct scene *scene, int group, struct scene_errors *errors);
 void generate_read_csv(
     struct generate_list *list, const struct scene *scene, int group, struct scene_errors *errors);
+/* Walls that elements can touch across a periodic face have to repeat there. */
+void generate_check_periodic(const struct scene *scene, const struct walls *walls,
+    const struct elements_host *elements, struct scene_errors *errors);
 /* Sets elements->overlaps, too. */
 void generate_check(
     const struct scene *scene, struct elements_host *elements, struct scene_errors *errors);

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Overlaps that are too large, and walls that are passed, are said before a run and by it."""
 import json
+import math
 import os
 
 import cli
@@ -126,6 +127,110 @@ class Overlaps(cli.Case):
                 self.assertEqual(run.code, 5 if is_in else 0, text)
                 said = "t = 0.001 s: element 1 is inside wall 'plate', which appears (1 in all)"
                 self.assertEqual(said in text, is_in, text)
+
+
+def trough(low, high, wave=0.0):
+    """Strips along x from low to high, of 10 cells; `wave` [m] with a period of 0.1 m across."""
+    x = [low + (high - low) * k / 10 for k in range(11)]
+    z = [wave * math.sin(20 * math.pi * a) for a in x]
+    text = "solid s\n"
+    for k in range(10):
+        a, b = (x[k], -0.05, z[k]), (x[k + 1], -0.05, z[k + 1])
+        c, d = (x[k + 1], 0.05, z[k + 1]), (x[k], 0.05, z[k])
+        for corners in ((a, b, c), (a, c, d)):
+            text += "facet normal 0 0 1\nouter loop\n"
+            text += "".join("vertex %.9g %.9g %.9g\n" % p for p in corners)
+            text += "endloop\nendfacet\n"
+    return text + "endsolid s\n"
+
+
+def box(low, high):
+    return f"box: {{min: [{low}, -1, -1], max: [{high}, 1, 1]}}"
+
+
+def rod(x, y=0.08, along="z"):
+    ends = (f"[{x}, {y}, -0.2]", f"[{x}, {y}, 0.2]")
+    if along == "x":
+        ends = (f"[{x}, {y}, 0]", f"[{0.1 - x}, {y}, 0]")
+    return f"cylinder: {{from: {ends[0]}, to: {ends[1]}, radius: 6 mm, inside: false}}"
+
+
+def plate(x, size, normal="[0, 0, 1]"):
+    return f"rectangle: {{center: [{x}, 0, -0.05], normal: {normal}, size: {size}}}"
+
+
+class Periodic(cli.Case):
+    """A domain of 0.1 m in x, balls of 5 mm; walls that go on beyond both faces, or end before."""
+
+    SCENE = """method: particles
+time: {end: 90 ms, step: 1e-5 s}
+materials: {a: {density: 2500}}
+contacts: [{between: [a, a], normal: {law: linear, stiffness: 1e4, restitution: 1}}]
+elements: [{name: ball, material: a, file: ball.csv}]
+domain: {periodic: [x], box: {min: [0, -0.1, -0.1], max: [0.1, 0.1, 0.1]}}
+walls: [{name: odd, material: a, surface: {SURFACE}MOTION}]
+"""
+
+    def accepted(self, surface, motion=""):
+        motion = ", motion: {" + motion + "}" if motion else ""
+        self.put("s.yaml", self.SCENE.replace("SURFACE", surface).replace("MOTION", motion))
+        run = self.call("check", "s.yaml")
+        text = "\n".join(run.err)
+        if run.code == 0:
+            return True
+        self.assertEqual(run.code, 3, text)
+        self.assertIn("s.yaml:7: wall 'odd' reaches over a periodic face, x = 0 m or 0.1 m", text)
+        return False
+
+    def test_faces(self):
+        self.put("ball.csv", "x,y,z,radius\n0.05,0,0.05,0.005\n")
+        self.put("exact.stl", trough(0, 0.1))
+        self.put("long.stl", trough(-0.03, 0.13))
+        self.put("waves.stl", trough(-0.02, 0.13, wave=0.003))
+        self.put("repeats.stl", trough(-0.05, 0.15, wave=0.003))
+        self.put("one_sided.stl", trough(-0.05, 0.104))
+        for surface, motion, good in (
+            ("plane: {point: [0, 0, -0.05], normal: [0, 0, 1]}", "", True),
+            ("plane: {point: [0, 0, -0.05], normal: [0, 1, 3]}", "velocity: [1, 0, 0]", True),
+            ("plane: {point: [0, 0, -0.05], normal: [0.1, 0, 1]}", "", False),
+            ("plane: {point: [-0.005, 0, 0], normal: [1, 0, 0]}", "", True),
+            ("plane: {point: [-0.0049, 0, 0], normal: [1, 0, 0]}", "", False),
+            (box(-0.005, 0.105), "", True),
+            (box(0, 0.1), "", False),
+            (rod(0), "", False),
+            (rod(0.1), "", False),
+            (rod(0.1, y=0.12), "", True),
+            (rod(0.01), "", False),
+            (rod(0.012), "", True),
+            (rod(0.088), "", True),
+            (rod(0.09), "", False),
+            (rod(-0.2), "", True),
+            (rod(-0.006, along="x"), "", True),
+            (rod(0, along="x"), "", False),
+            (rod(0.05), "velocity: [1, 0, 0]", False),
+            (rod(0.05), "velocity: [1, 0, 0], remove_at: 30 ms", True),
+            (rod(0.05), "oscillation: {amplitude: [0.05, 0, 0], frequency: 20}", False),
+            (rod(0.05), "velocity: [0, 0, 1]", True),
+            (plate(0.05, "[0.1, 1]"), "", False),
+            (plate(0.05, "[0.12, 1]"), "", True),
+            (plate(0.05, "[0.08, 1]"), "", True),
+            (
+                plate(0.05, "[0.12, 1]"),
+                "rotation: {center: [0, 0, 0], axis: [0, 1, 0], rate: 1}",
+                False,
+            ),
+            (
+                plate(0.05, "[0.12, 1]"),
+                "rotation: {center: [0, 0, 0], axis: [1, 0, 0], rate: 1}",
+                True,
+            ),
+            ("stl: exact.stl", "", False),
+            ("stl: long.stl", "", True),
+            ("stl: one_sided.stl", "", False),
+            ("stl: repeats.stl", "", True),
+            ("stl: waves.stl", "", False),
+        ):
+            self.assertEqual(self.accepted(surface, motion), good, (surface, motion))
 
 
 if __name__ == "__main__":

@@ -55,7 +55,7 @@ def few(cases):
     s["partition"] = {"every": 0}
     return s, {
         "few.csv": touching_csv((5, 3, 1), 0.0049, [radius], (0.0002, 0, 0.00245), (30, 15, 0)),
-        "sheet.stl": sheet_stl(-0.003, 0.026, 1, lambda x, y: 0.0048 + 0.1 * x),
+        "sheet.stl": sheet_stl(-0.0055, 0.026, 1, lambda x, y: 0.0048 + 0.1 * x),
     }
 
 
