@@ -101,7 +101,7 @@ static void print_time(
             time->allow_unstable ? "continues, as time.allow_unstable asks"
                                  : "stops when its contacts are as stiff as that");
     struct scene_errors warnings = {0};
-    limit_warnings(scene, elements, speed, dt, &warnings);
+    limit_warnings(scene, walls, elements, speed, dt, &warnings);
     check_warnings(&warnings);
 }
 

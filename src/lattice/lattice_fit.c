@@ -1,4 +1,5 @@
 /* How well the cells of a body fill its shape. */
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,6 +9,7 @@
 
 enum { PARTS = 48, MOST_LAYERS = 10000 };
 static const double close = 0.01;
+static const double coarse = 1e-5; /* strain that a displacement in single precision rounds to */
 
 /* Share of the bounding box that is inside the shape and in none of its holes. */
 static double share_inside(const struct lattice_cut *cut)
@@ -77,9 +79,39 @@ static char *fitting_sizes(const double length[3], double h)
     return fail_format("; a cell of %.4g m or %.4g m fits", least / below, least / above);
 }
 
+/* Largest component of a velocity that a body has or is given [m/s]. */
+static double fastest(const struct scene *scene, int b)
+{
+    double v = 0;
+    for (int a = 0; a < 3; a++) {
+        v = fmax(v, fabs(scene->body[b].velocity[a]));
+        for (int k = 0; k < scene->n_boundary; k++) {
+            const struct boundary *of = &scene->boundary[k];
+            bool is_given = of->kind == BOUNDARY_VELOCITY && isfinite(of->value[a]) &&
+                            (of->body < 0 || of->body == b);
+            if (is_given) v = fmax(v, fabs(of->value[a]));
+        }
+    }
+    return v;
+}
+
+/* In single precision a displacement u is known to u 1.2e-7, and a strain to that over a cell. */
+static void warn_of_precision(const struct scene *scene, struct scene_errors *warnings)
+{
+    for (int b = 0; b < scene->n_body && scene->precision == PRECISION_SINGLE; b++) {
+        double way = fastest(scene, b) * scene->time.end, spacing = way * (double)FLT_EPSILON;
+        if (!(spacing > coarse * scene->body[b].cell)) continue;
+        scene_errors_add(warnings,
+            "precision: single: body '%s' may move by %.3g m, where neighbouring numbers are up to "
+            "%.3g m apart, a strain of %.3g in a cell; above %g take precision: mixed",
+            scene->body[b].name, way, spacing, spacing / scene->body[b].cell, coarse);
+    }
+}
+
 void lattice_fit_warnings(
     const struct scene *scene, const struct lattice_cells *cells, struct scene_errors *warnings)
 {
+    warn_of_precision(scene, warnings);
     for (int b = 0; b < scene->n_body; b++) {
         struct lattice_fit fit = cells->fit[b];
         double off = fabs(fit.volume - 1);

@@ -48,9 +48,9 @@ double limit_speed(
 double limit_dense(const struct scene *scene, const struct elements_host *elements, double speed);
 
 /* What speaks against the step dt [s] besides stability, one text each: too few steps per contact,
- * per radius, per range of a bond; and overlaps
- * that the scene's weights and speeds allow. */
-void limit_warnings(const struct scene *scene, const struct elements_host *elements, double speed,
-    double dt, struct scene_errors *warnings);
+ * per radius, per range of a bond; overlaps
+ * that the scene's weights and speeds allow; single precision far from the origin. */
+void limit_warnings(const struct scene *scene, const struct walls *walls,
+    const struct elements_host *elements, double speed, double dt, struct scene_errors *warnings);
 
 #endif

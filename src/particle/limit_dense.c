@@ -105,6 +105,29 @@ struct limit_contact limit_deepest(const struct scene *scene, const struct limit
     return limit_contact_of(m, ends, depth, speed, dt);
 }
 
+/* Overlap at which the spring holds what comes with `speed` and goes on being pulled by gravity g:
+ * k d^2/2, for Hertz (2/5) K d^(5/2), is m v^2/2 + m g d. The next d from the one before rises to
+ * the root from below. */
+double limit_depth(
+    const struct scene *scene, struct contact_material m, struct limit_ends ends, double speed)
+{
+    const double *a = scene->gravity;
+    double m_star = 1 / (ends.w_i + ends.w_j), g = sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+    bool is_hertz = material_is_hertz(m);
+    double k = is_hertz ? 0.4 * m.k_n * sqrt(limit_r_star(ends)) : 0.5 * m.k_n, depth = 0, before;
+    do {
+        before = depth;
+        depth = pow(m_star * (0.5 * speed * speed + g * before) / k, is_hertz ? 0.4 : 0.5);
+    } while (depth > before * (1 + 1e-6));
+    return depth;
+}
+
+double limit_range(struct contact_material m, struct limit_ends ends)
+{
+    return material_is_hertz(m) ? pow(m.f_b / (m.k_n * sqrt(limit_r_star(ends))), 2.0 / 3.0)
+                                : m.f_b / m.k_n;
+}
+
 static double shell(double centre, double r)
 {
     if (centre < THIRTEEN_FIT * r) return 12;

@@ -22,5 +22,12 @@ struct contact_material limit_material_of(const struct scene *scene, int a, int 
  * dashpots. */
 struct limit_contact limit_deepest(const struct scene *scene, const struct limit_class *c,
     const struct limit_class *p, struct contact_material m, double speed, double dt);
+/* How deep contacts get at `speed` [m/s], gravity included [m]; how far bonds reach [m]. */
+double limit_depth(
+    const struct scene *scene, struct contact_material m, struct limit_ends ends, double speed);
+double limit_range(struct contact_material m, struct limit_ends ends);
+/* Part of limit_warnings. */
+void limit_precision_warnings(const struct scene *scene, const struct walls *walls,
+    const struct elements_host *elements, double speed, double dt, struct scene_errors *warnings);
 
 #endif

@@ -75,21 +75,6 @@ struct worst {
     struct deepest deepest;
 };
 
-/* Overlap at which the spring holds what comes with `speed` and goes on being pulled by gravity g:
- * k d^2/2, for Hertz (2/5) K d^(5/2), is m v^2/2 + m g d. The next d from the one before rises to
- * the root from below. */
-static double depth_of(
-    struct contact_material m, struct limit_ends ends, double m_star, double speed, double g)
-{
-    bool is_hertz = material_is_hertz(m);
-    double k = is_hertz ? 0.4 * m.k_n * sqrt(limit_r_star(ends)) : 0.5 * m.k_n, depth = 0, before;
-    do {
-        before = depth;
-        depth = pow(m_star * (0.5 * speed * speed + g * before) / k, is_hertz ? 0.4 : 0.5);
-    } while (depth > before * (1 + 1e-6));
-    return depth;
-}
-
 static void look_how_deep(struct deepest *deepest, const struct scene *scene,
     const struct limit_class *c, const struct limit_class *p, int wall, double speed)
 {
@@ -97,7 +82,7 @@ static void look_how_deep(struct deepest *deepest, const struct scene *scene,
     struct contact_material m = limit_material_of(scene, c->material, b);
     struct limit_ends ends = {c->w, p ? p->w : 0, c->r, p ? p->r : 0};
     if (!(m.k_n > 0)) return;
-    double depth = depth_of(m, ends, 1 / (ends.w_i + ends.w_j), speed, length(scene->gravity));
+    double depth = limit_depth(scene, m, ends, speed);
     double share = depth / (p ? fmin(c->r, p->r) : c->r);
     if (share > deepest->share)
         *deepest = (struct deepest){share, depth, c->material, p ? b : wall, !p};
@@ -132,8 +117,7 @@ static void look(struct worst *worst, const struct scene *scene, const struct li
         fmin(worst->contact, (material_is_hertz(m) ? 4.03 : M_PI) * sqrt(m_star / k.k_n));
     if (!(m.f_b > 0)) return;
     struct limit_ends ends = {c->w, p ? p->w : 0, c->r, p ? p->r : 0};
-    double range = material_is_hertz(m) ? pow(m.f_b / (m.k_n * sqrt(limit_r_star(ends))), 2.0 / 3.0)
-                                        : m.f_b / m.k_n;
+    double range = limit_range(m, ends);
     double energy = (material_is_hertz(m) ? 0.4 : 0.5) * m.f_b * range;
     double v = fmin(speed, sqrt(2 * energy / m_star));
     if (!(v > 0) || range / v >= worst->bond) return;
@@ -142,8 +126,8 @@ static void look(struct worst *worst, const struct scene *scene, const struct li
     worst->bond_speed = v;
 }
 
-void limit_warnings(const struct scene *scene, const struct elements_host *elements, double speed,
-    double dt, struct scene_errors *warnings)
+void limit_warnings(const struct scene *scene, const struct walls *walls,
+    const struct elements_host *elements, double speed, double dt, struct scene_errors *warnings)
 {
     int n_class;
     struct limit_class *all = limit_classes(scene, elements, &n_class);
@@ -164,6 +148,7 @@ void limit_warnings(const struct scene *scene, const struct elements_host *eleme
         }
     }
     free(all);
+    limit_precision_warnings(scene, walls, elements, speed, dt, warnings);
     warn_how_deep(&worst.deepest, scene, speed, warnings);
     if (worst.contact < CONTACT_STEPS * dt)
         scene_errors_add(warnings,

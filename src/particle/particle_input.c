@@ -121,8 +121,8 @@ void particle_warn(struct sim *s)
 {
     struct particle_run *run = s->particle;
     struct scene_errors warnings = {NULL, 0};
-    limit_warnings(
-        s->scene, run->first, limit_speed(s->scene, run->walls, run->first), s->dt, &warnings);
+    limit_warnings(s->scene, run->walls, run->first, limit_speed(s->scene, run->walls, run->first),
+        s->dt, &warnings);
     for (int i = 0; i < warnings.n; i++) log_warn(s->log, "%s", warnings.text[i]);
     scene_errors_free(&warnings);
     warn_of_overlaps(s);

@@ -64,6 +64,59 @@ class Measured(cli.Case):
                 self.assertEqual(row[1:4], ["nan", "nan", "nan"])
 
 
+class Single(cli.Case):
+    """What single precision is too coarse for; `mixed` and `double` say nothing."""
+
+    GRAINS = """method: particles
+time: {end: 3e-5, step: 1e-6}
+materials: {a: {density: 2500}}
+contacts: [{between: [a, a], normal: {law: linear, stiffness: 1e3, restitution: 0.5}}]
+elements: [{name: e, material: a, file: e.csv}]
+"""
+    BAR = """method: lattice
+time: {end: 1e-4, step: 1e-7}
+materials: {a: {density: 2500, young: 1e9, poisson: 0.2}}
+bodies: [{name: bar, material: a, cell: 1 mm, velocity: [SPEED, 0, 0],
+    shape: {box: {min: [9, 9, 9], max: [9.004, 9.002, 9.002]}}}]
+"""
+
+    def warnings(self, scene, *args):
+        self.put("s.yaml", scene)
+        run = self.call("check", "s.yaml", *args)
+        self.assertEqual(run.code, 0, run.err)
+        return re.findall("warning: (precision: single: .*)", run.out)
+
+    def grains(self, x, radius, speed):
+        gap = 2.05 * radius
+        self.put("e.csv", f"x,y,z,radius,vx\n{x},0,0,{radius},{speed}\n{x+gap},0,0,{radius},0\n")
+
+    def test_grains(self):
+        for x, radius, speed, what in (
+            (10, 0.0005, 0.1, "0.00191 of the smallest radius"),
+            (1e5, 0.005, 1, "of the smallest radius"),
+            (1, 0.0005, 0.1, "of the overlap of an impact"),
+            (4, 0.05, 0.001, "of the overlap of an impact"),
+            (0.01, 0.0005, 0.1, None),
+        ):
+            self.grains(x, radius, speed)
+            said = self.warnings(self.GRAINS, "--precision", "single")
+            self.assertEqual(len(said), what is not None, (x, said))
+            self.assertIn(what or "", "".join(said))
+            for precision in ("mixed", "double"):
+                self.assertEqual(self.warnings(self.GRAINS, "--precision", precision), [])
+        self.grains(10, 0.0005, 0.1)
+        run = self.call("run", "s.yaml", "-o", "d", "--precision", "single", "--quiet")
+        self.assertEqual(run.code, 0)
+        self.assertRegex("\n".join(run.err), "warning: precision: single: at 10 m.*mixed")
+
+    def test_lattice(self):
+        """It works with displacements: where a body is does not matter, only how far it moves."""
+        for speed, n in ((1e-3, 0), (10, 0), (1e3, 1)):
+            scene = self.BAR.replace("SPEED", str(speed))
+            self.assertEqual(len(self.warnings(scene, "--precision", "single")), n, speed)
+            self.assertEqual(self.warnings(scene, "--precision", "mixed"), [])
+
+
 class Texts(cli.Case):
     def test_resume_reads_what_run_accepts(self):
         """Characters that YAML takes for line breaks, or only as escapes, and the longest name."""
