@@ -17,7 +17,11 @@
     X(rolling_cdt, ROLLING_CDT, c.mu_r > 0 && !(c.k_r > 0))                                        \
     X(rolling_epsd, ROLLING_EPSD, c.k_r > 0)                                                       \
     X(binding, BINDING, c.f_b > 0)                                                                 \
-    X(jkr, JKR, c.jkr > 0)
+    X(jkr, JKR, c.jkr > 0)                                                                         \
+    X(whole_slip, WHOLE_SLIP, c.mu > 0 && (c.law & CONTACT_WHOLE_SLIP))                            \
+    X(radius_lever, RADIUS_LEVER, c.mu > 0 && (c.law & CONTACT_RADIUS_LEVER))                      \
+    X(no_rescale, NO_RESCALE, c.mu > 0 && (c.law & CONTACT_NO_RESCALE))                            \
+    X(cap_magnitude, CAP_MAGNITUDE, c.mu > 0 && (c.law & CONTACT_CAP_MAGNITUDE))
 
 #ifndef WITH_LINEAR
 #define WITH_LINEAR 1
@@ -29,6 +33,10 @@
 #define WITH_ROLLING_EPSD 1
 #define WITH_BINDING 1
 #define WITH_JKR 1
+#define WITH_WHOLE_SLIP 1
+#define WITH_RADIUS_LEVER 1
+#define WITH_NO_RESCALE 1
+#define WITH_CAP_MAGNITUDE 1
 #define WITH_ENERGY 1 /* no feature of a law: losses are accounted for */
 #endif
 

@@ -45,8 +45,8 @@ struct contact_step {
     struct normal_step normal;
     real cap_t;
     vec3 trial_t, trial_r;
-    struct slider_carry carry;
-    struct slider slide, roll; /* friction; EPSD */
+    struct slider_carry carry, carry_t; /* of rolling, of friction */
+    struct slider slide, roll;          /* friction; EPSD */
 };
 
 LAW int contact_is_epsd(struct contact_parameters p)
@@ -64,6 +64,7 @@ LAW struct contact_step contact_begin(
     s.normal = normal_step_of(k, dt, state, p);
     part = state != 0 ? (real)1 : r_clamp(s.normal.steps, (real)0, (real)1);
     s.carry = slider_carry_of(k, p, s.normal.factors.spring, part * dt, dt);
+    s.carry_t = tangential_carry(s.carry, p);
     s.cap_t = tangential_cap(s.normal.force, s.normal.bonded, p);
     s.trial_t = s.trial_r = v3(0, 0, 0);
     s.slide.spring = s.slide.force = s.roll.spring = s.roll.force = v3(0, 0, 0);
@@ -98,7 +99,7 @@ LAW void contact_ledger(struct contact_kinematics k, struct contact_parameters p
     if (WITH_TANGENTIAL) {
         real stiffness_old = p.mu > 0 ? p.k_t * s.carry.before : (real)0;
         real lost = slider_loss(stiffness_old, h->xi, s.normal.alive ? stiffness_t : (real)0,
-            s.trial_t, s.slide.spring, k.v_t, s.carry);
+            s.trial_t, s.slide.spring, k.v_t, s.carry_t);
         lost +=
             s.slide.slips ? before_touch * stiffness_t * v3_dot(s.slide.spring, k.v_t) : (real)0;
         r->elastic += (real)0.5 * stiffness_t * v3_dot(s.slide.spring, s.slide.spring);
@@ -145,10 +146,12 @@ LAW struct contact_result contact_law(
     r.force = v3_scale(-s.normal.force, k.n);
     if (WITH_TANGENTIAL) {
         s.trial_t =
-            contact_select(s.normal.alive && p.mu > 0, slider_trial(h->xi, k.v_t, s.carry, k.n));
+            contact_select(s.normal.alive && p.mu > 0, slider_trial(h->xi, k.v_t, s.carry_t, k.n));
         vec3 before = contact_select(
-            s.normal.alive && p.mu > 0, slider_trial(h->xi, v3(0, 0, 0), s.carry, k.n));
-        s.slide = tangential_force(s.trial_t, before, k, s.cap_t, s.normal.factors, p);
+            s.normal.alive && p.mu > 0, slider_trial(h->xi, v3(0, 0, 0), s.carry_t, k.n));
+        s.slide = tangential_force(s.trial_t, before, k, s.carry_t, s.cap_t, s.normal.factors, p);
+        if (WITH_WHOLE_SLIP)
+            s.slide.spring = contact_select(s.normal.alive && p.mu > 0, s.slide.spring);
         r.force = v3_fma(-s.normal.force, k.n, s.slide.force);
         r.couple = v3_cross(k.n, s.slide.force);
     }

@@ -30,15 +30,17 @@ struct kinematics_motion {
     vec3 kick;           /* what v gains until t^{n+1} by the forces of t^n: (dt/2) a^n [m/s] */
     vec3 w_i, w_j;       /* at the half step [rad/s] */
     vec3 spun_i, spun_j; /* what these gain [rad/s] */
+    int radius_lever;    /* WITH_RADIUS_LEVER: lever arms are the radii, in all that follows */
 };
 
 struct contact_kinematics {
-    vec3 n;        /* unit normal from i to j at t^{n+1} */
-    vec3 n_half;   /* the same at the half step */
-    real delta;    /* overlap at t^{n+1} [m] */
-    real l_i, l_j; /* lever arms at t^{n+1} [m]; l_i + l_j is the distance of the centres */
-    real v_n;      /* approach speed of the half step along n [m/s] */
-    real kick_n;   /* what it gains until t^{n+1} by the forces of t^n [m/s] */
+    vec3 n;      /* unit normal from i to j at t^{n+1} */
+    vec3 n_half; /* the same at the half step */
+    real delta;  /* overlap at t^{n+1} [m] */
+    /* lever arms at t^{n+1} [m]; l_i + l_j is the distance of the centres, or the sum of radii */
+    real l_i, l_j;
+    real v_n;    /* approach speed of the half step along n [m/s] */
+    real kick_n; /* what it gains until t^{n+1} by the forces of t^n [m/s] */
     /* along n_half: v_n_half dt is the growth of delta over the step, to third order */
     real v_n_half;
     vec3 v_t;     /* of i relative to j at the contact, perpendicular to n_half [m/s] */
@@ -56,6 +58,7 @@ LAW struct kinematics_motion kinematics_free(vec3 v_i, vec3 v_j, vec3 w_i, vec3 
     m.w_i = w_i;
     m.w_j = w_j;
     m.kick = m.spun_i = m.spun_j = v3(0, 0, 0);
+    m.radius_lever = 0;
     return m;
 }
 
@@ -129,7 +132,8 @@ LAW struct contact_kinematics contact_kinematics_pair(
     real d = coincide ? (real)sum : (real)distance;
     real inverse = (real)1 / d;
     real delta = (real)(sum - distance);
-    real half_delta = (real)0.5 * delta;
+    int radii = WITH_RADIUS_LEVER && m.radius_lever;
+    real half_delta = radii ? (real)0 : (real)0.5 * delta;
     real l_i = r_i - half_delta, l_j = r_j - half_delta;
     vec3 x = v3_of_p3(D);
     vec3 n = v3(coincide ? (real)1 : inverse * x.x, coincide ? (real)0 : inverse * x.y,
@@ -140,7 +144,7 @@ LAW struct contact_kinematics contact_kinematics_pair(
     if (KINEMATICS_HALF) {
         real length;
         n_half = kinematics_unit(v3_scale(inverse, v3_fma((real)0.5 * dt, m.v, x)), n, &length);
-        shift = (real)0.5 * d * (length - (real)1);
+        shift = radii ? (real)0 : (real)0.5 * d * (length - (real)1);
     }
     return contact_kinematics_of(n, n_half, delta, l_i, l_j, m,
         kinematics_spin(l_i + shift, l_j + shift, m.w_i, m.w_j),
@@ -154,9 +158,10 @@ LAW struct contact_kinematics contact_kinematics_pair(
 LAW struct contact_kinematics contact_kinematics_wall(
     vec3 n, vec3 n_half, real delta, real delta_half, struct kinematics_motion m, real r_i)
 {
-    return contact_kinematics_of(n, n_half, delta, r_i - delta, 0, m,
-        v3_scale(r_i - delta_half, m.w_i), v3_scale(r_i - delta, m.w_i),
-        v3_scale(r_i - delta, m.spun_i));
+    int radius = WITH_RADIUS_LEVER && m.radius_lever;
+    real l_i = radius ? r_i : r_i - delta, l_half = radius ? r_i : r_i - delta_half;
+    return contact_kinematics_of(n, n_half, delta, l_i, 0, m, v3_scale(l_half, m.w_i),
+        v3_scale(l_i, m.w_i), v3_scale(l_i, m.spun_i));
 }
 
 #endif

@@ -20,6 +20,11 @@
 /* Bits of contact_material.law and contact_parameters.law. */
 #define CONTACT_HERTZ 1         /* Hertz-Mindlin, else linear */
 #define CONTACT_NO_ATTRACTION 2 /* the dashpot may not pull: F_n = max(F_n, 0) */
+/* Friction as other codes have it; docs/conventions.md says which. */
+#define CONTACT_WHOLE_SLIP 4     /* slip takes spring and dashpot together */
+#define CONTACT_RADIUS_LEVER 8   /* lever arms are the radii, whatever the overlap */
+#define CONTACT_NO_RESCALE 16    /* F_t = k_t(delta) xi, so that a cycle of loading gives energy */
+#define CONTACT_CAP_MAGNITUDE 32 /* friction is limited by mu |F_n| */
 
 /* Two materials, any sizes. S = 1 (linear) or R*^(1/2) (Hertz). One row (type, name) each; from it
  * follow the struct, the tables that the host makes and the kernels read. */
@@ -97,6 +102,13 @@ LAW struct contact_parameters parameters_load(CONTACT_ROW *row)
 {
     struct contact_parameters p = {CONTACT_PARAMETERS(PARAMETER_FROM_ROW)};
     return p;
+}
+
+LAW int parameters_choose(struct contact_parameters p, int bit) { return (p.law & bit) != 0; }
+
+LAW int parameters_radius_lever(struct contact_parameters p)
+{
+    return WITH_RADIUS_LEVER && parameters_choose(p, CONTACT_RADIUS_LEVER);
 }
 
 LAW int material_is_hertz(struct contact_material c)

@@ -14,6 +14,11 @@
  * way back along T alone is of first order where the direction of sliding turns. A step that turns
  * the force round (no such a) goes back along T. The loss, a k (B + F)^2/(2 k^2), is not negative.
  *
+ * Whole slip, by choice (LAMMPS): slip is tested on spring and dashpot together, T = -k x - gamma
+ * v. If |T| > cap, F goes back to the cap as above, B with the dashpot of t^n, and the spring is
+ * what the dashpot leaves of it, x = -(F + gamma v)/k. So the spring may hold more than the cap,
+ * against the slip; its energy is in the account as it is.
+ *
  * The spring lies in the tangent plane and turns with it. For x perpendicular to n_old the rotation
  * of n_old into n is
  *     x' = x - (n.x) (n + n_old)/(1 + n.n_old),
@@ -28,6 +33,8 @@
  * displacement is, T' = T k'/k - k' dx. Storing x = -T/k with r = k/k' this is
  *     x' = keep x + gain dx
  *     growing (r < 1): keep = r, gain = (mean k)/k';  falling: keep = gain = 1.
+ * Without rescaling, by choice (F_t = k_t(delta) x), keep = gain = 1 always: a cycle of loading
+ * then gives energy, which the account shows as a loss below zero.
  * For delta linear in time (mean k)/k' = (2/3)(1 + r + r^2)/(1 + r); (4 + r + r^2)/6 equals it at r
  * = 0 (onset) and to second order at 1. */
 #ifndef DEMOCLES_LAW_SLIDER_H
@@ -43,6 +50,13 @@ struct slider_carry {
     real gain;   /* [1] */
     real time;   /* part of dt in contact [s] */
     real before; /* overlap factor s at t^n; the linear law has 1 */
+};
+
+/* A force beyond the cap that goes back to it along the mean force of the step. */
+struct slider_return {
+    vec3 force;
+    real back, scale; /* force = scale (T - back B) */
+    int slips;
 };
 
 struct slider {
@@ -80,37 +94,59 @@ LAW vec3 slider_trial(vec3 spring, vec3 rate, struct slider_carry c, vec3 n)
     return v3_fma(-v3_dot(n, x), c.turn, x);
 }
 
+/* u, b: T and B above. */
+LAW struct slider_return slider_back(vec3 u, vec3 b, real cap)
+{
+    struct slider_return r;
+    real limit = cap * cap;
+    real square = v3_dot(u, u);
+    int slips = square > limit;
+    real excess = square - limit, along = v3_dot(u, b) + limit;
+    real root = along * along - (v3_dot(b, b) - limit) * excess;
+    int turns = slips && along > 0 && root > 0;
+    r.slips = slips;
+    r.back = turns ? excess / (along + r_sqrt(root)) : (real)0;
+    u = v3_fma(-r.back, b, u);
+    square = turns ? v3_dot(u, u) : square;
+    r.scale = slips ? cap / r_sqrt(square) : (real)1;
+    r.force = v3_scale(r.scale, u);
+    return r;
+}
+
 /* trial: from slider_trial; before: the same without the way of this step; k: stiffness; dashpot:
  * its force at t^{n+1}, zero where there is none (damped = 0); cap >= 0: largest force. */
 LAW struct slider slider_slip(vec3 trial, vec3 before, real k, int damped, vec3 dashpot, real cap)
 {
     struct slider r;
-    vec3 u = v3_scale(-k, trial), b = v3_scale(-k, before);
-    real limit = cap * cap;
-    real square = v3_dot(u, u);
-    int slips = square > limit;
-    real scale;
-    /* the way back */
-    real excess = square - limit, along = v3_dot(u, b) + limit;
-    real root = along * along - (v3_dot(b, b) - limit) * excess;
-    int turns = slips && along > 0 && root > 0;
-    real a = turns ? excess / (along + r_sqrt(root)) : (real)0;
-    u = v3_fma(-a, b, u);
-    square = turns ? v3_dot(u, u) : square;
-    scale = slips ? cap / r_sqrt(square) : (real)1;
-    u = v3_scale(scale, u);
-    vec3 x = v3_fma(-a, before, trial);
-    r.spring = v3(slips ? scale * x.x : trial.x, slips ? scale * x.y : trial.y,
-        slips ? scale * x.z : trial.z);
-    r.slips = slips;
+    struct slider_return way = slider_back(v3_scale(-k, trial), v3_scale(-k, before), cap);
+    vec3 u = way.force, x = v3_fma(-way.back, before, trial);
+    r.spring = v3(way.slips ? way.scale * x.x : trial.x, way.slips ? way.scale * x.y : trial.y,
+        way.slips ? way.scale * x.z : trial.z);
+    r.slips = way.slips;
     if (damped) {
         u = v3_add(u, dashpot);
-        square = v3_dot(u, u);
+        real limit = cap * cap, square = v3_dot(u, u);
         /* a spring that has just been cut to the cap is not cut again for its rounding */
         int shorten = square > limit && v3_dot(dashpot, dashpot) > 0;
         u = v3_scale(shorten ? cap / r_sqrt(square) : (real)1, u);
     }
     r.force = u;
+    return r;
+}
+
+/* Whole slip; dashpot_old: its force at t^n. */
+LAW struct slider slider_slip_whole(
+    vec3 trial, vec3 before, real k, vec3 dashpot, vec3 dashpot_old, real cap)
+{
+    struct slider r;
+    struct slider_return way =
+        slider_back(v3_fma(-k, trial, dashpot), v3_fma(-k, before, dashpot_old), cap);
+    real inverse = (real)1 / r_max(k, SLIDER_TINY);
+    vec3 left = v3_scale(inverse, v3_sub(dashpot, way.force));
+    r.spring = v3(
+        way.slips ? left.x : trial.x, way.slips ? left.y : trial.y, way.slips ? left.z : trial.z);
+    r.force = way.force;
+    r.slips = way.slips;
     return r;
 }
 

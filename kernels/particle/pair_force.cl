@@ -7,6 +7,10 @@
  * GPU the phases cost two barriers.
  *
  * lint: WITH_TANGENTIAL_DAMPING requires WITH_TANGENTIAL
+ * lint: WITH_WHOLE_SLIP requires WITH_TANGENTIAL
+ * lint: WITH_RADIUS_LEVER requires WITH_TANGENTIAL
+ * lint: WITH_NO_RESCALE requires WITH_TANGENTIAL
+ * lint: WITH_CAP_MAGNITUDE requires WITH_TANGENTIAL
  * lint: WITH_TANGENTIAL requires WITH_SPIN
  * lint: WITH_ROLLING_CDT requires WITH_SPIN
  * lint: WITH_ROLLING_EPSD requires WITH_SPIN
@@ -174,8 +178,9 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void pair_forc
         D = nearest_images(D, period_x, period_y, period_z);
 #endif
         struct contact_parameters p = PARAMETERS;
-        struct contact_kinematics k =
-            contact_kinematics_pair(D, pair_motion(loc, l), RADIUS(0), RADIUS(1), dt);
+        struct kinematics_motion m = pair_motion(loc, l);
+        m.radius_lever = parameters_radius_lever(p);
+        struct contact_kinematics k = contact_kinematics_pair(D, m, RADIUS(0), RADIUS(1), dt);
         struct contact_history h = HISTORY_LOAD(base, planes, l);
         struct contact_result r = contact_law(k, p, dt, &h);
         HISTORY_STORE(h, base, planes, l);

@@ -6,6 +6,10 @@
  * wants it; a moving wall is looked at from its own frame.
  *
  * lint: WITH_TANGENTIAL_DAMPING requires WITH_TANGENTIAL
+ * lint: WITH_WHOLE_SLIP requires WITH_TANGENTIAL
+ * lint: WITH_RADIUS_LEVER requires WITH_TANGENTIAL
+ * lint: WITH_NO_RESCALE requires WITH_TANGENTIAL
+ * lint: WITH_CAP_MAGNITUDE requires WITH_TANGENTIAL
  * lint: WITH_TANGENTIAL requires WITH_SPIN
  * lint: WITH_ROLLING_CDT requires WITH_SPIN
  * lint: WITH_ROLLING_EPSD requires WITH_SPIN
@@ -168,9 +172,10 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void wall_forc
         g.distance = counts ? g.distance : (preal)2 * (preal)radius;
         h.state = counts ? h.state : 0;
 #endif
-        struct contact_kinematics k =
-            contact_kinematics_wall(g.n, g.n_half, radius - (real)g.distance,
-                radius - (real)g.distance_half, wall_motion(g, loc, l), radius);
+        struct kinematics_motion m = wall_motion(g, loc, l);
+        m.radius_lever = parameters_radius_lever(p);
+        struct contact_kinematics k = contact_kinematics_wall(
+            g.n, g.n_half, radius - (real)g.distance, radius - (real)g.distance_half, m, radius);
         struct contact_result r = contact_law(k, p, dt, &h);
         HISTORY_STORE(h, base, planes, l);
         LEDGER_ADD(r, base, planes, l);

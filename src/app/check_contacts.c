@@ -71,16 +71,28 @@ static void print_normal(const struct contact *c, double e_star)
         c->attraction ? "" : ", no-tension limit");
 }
 
+static void print_tangential(const struct contact *c)
+{
+    if (c->normal_law == NORMAL_LINEAR)
+        printf("        tangential: k_t %.4g N/m", c->stiffness_ratio * c->stiffness);
+    else if (c->stiffness_ratio >= 0)
+        printf("        tangential: k_t/k_n %.4g", c->stiffness_ratio);
+    else printf("        tangential: k_t after Mindlin");
+    if (c->damping_factor >= 0) printf(", dashpot %.4g gamma_n", c->damping_factor);
+    else printf(", damping ratio %.4g", c->tangential_damping);
+    if (c->damping_mass == DAMPING_MASS_CENTRE) printf(" (of m*)");
+    printf(", friction %.4g\n", c->friction);
+    if (c->slip == SLIP_WHOLE) printf("            spring and dashpot slip together\n");
+    if (c->lever == LEVER_RADIUS)
+        printf("            lever arms are radii: angular momentum is not conserved\n");
+    if (!c->rescale)
+        printf("            the spring is not rescaled: cycles of loading can give energy\n");
+    if (c->cap == CAP_MAGNITUDE) printf("            friction limit mu |F_n|\n");
+}
+
 static void print_rest(const struct contact *c)
 {
-    if (c->has_tangential) {
-        if (c->normal_law == NORMAL_LINEAR)
-            printf("        tangential: k_t %.4g N/m", c->stiffness_ratio * c->stiffness);
-        else if (c->stiffness_ratio >= 0)
-            printf("        tangential: k_t/k_n %.4g", c->stiffness_ratio);
-        else printf("        tangential: k_t after Mindlin");
-        printf(", damping ratio %.4g, friction %.4g\n", c->tangential_damping, c->friction);
-    }
+    if (c->has_tangential) print_tangential(c);
     if (c->rolling == ROLLING_CDT)
         printf(
             "        rolling: constant directional torque, friction %.4g\n", c->rolling_friction);

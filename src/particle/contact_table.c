@@ -21,6 +21,20 @@ static double shear(const struct material *m)
     return m->young / (2 * (1 + m->poisson));
 }
 
+/* The dashpot of friction and its choices; p has that of the default definition. */
+static void set_tangential(struct contact_material *p, const struct contact *c)
+{
+    double centre = c->normal_law == NORMAL_HERTZ ? sqrt(3.5 * 5 / 6) : sqrt(3.5);
+    if (!c->has_tangential) return;
+    if (c->damping_mass == DAMPING_MASS_CENTRE) p->gamma_t *= centre;
+    if (c->damping_factor >= 0) p->gamma_t = c->damping_factor * p->gamma_n;
+    p->mu = c->friction;
+    if (c->slip == SLIP_WHOLE) p->law |= CONTACT_WHOLE_SLIP;
+    if (c->lever == LEVER_RADIUS) p->law |= CONTACT_RADIUS_LEVER;
+    if (!c->rescale) p->law |= CONTACT_NO_RESCALE;
+    if (c->cap == CAP_MAGNITUDE) p->law |= CONTACT_CAP_MAGNITUDE;
+}
+
 static struct contact_material material_of(const struct scene *scene, const struct contact *c)
 {
     double z_t = c->has_tangential ? c->tangential_damping : 0;
@@ -38,7 +52,7 @@ static struct contact_material material_of(const struct scene *scene, const stru
             e, g, c->damping_ratio, c->has_tangential ? c->stiffness_ratio : 0, z_t);
         p.jkr = pow(2 * M_PI * c->adhesion_work / e, 2.0 / 3);
     }
-    p.mu = c->has_tangential ? c->friction : 0;
+    set_tangential(&p, c);
     p.f_b = c->binding_force;
     if (c->rolling != ROLLING_NONE)
         p = contact_material_rolling(p, c->rolling_friction,

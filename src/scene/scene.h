@@ -51,6 +51,11 @@ struct material {
 };
 
 enum normal_law { NORMAL_LINEAR, NORMAL_HERTZ };
+/* Friction as other codes have it (docs/conventions.md); the first of each is the default. */
+enum slip_rule { SLIP_SPRING, SLIP_WHOLE };
+enum lever { LEVER_CONTACT, LEVER_RADIUS };
+enum friction_cap { CAP_COMPRESSION, CAP_MAGNITUDE };
+enum damping_mass { DAMPING_MASS_SURFACE, DAMPING_MASS_CENTRE };
 enum rolling_model { ROLLING_NONE, ROLLING_CDT, ROLLING_EPSD };
 
 /* Contact of two materials, unordered pair. A part that the scene leaves out has its `has_` false
@@ -66,7 +71,13 @@ struct contact {
     /* k_t/k_n [1], linear law; Hertz takes Mindlin's where this is negative (not given) */
     double stiffness_ratio;
     double tangential_damping; /* z_t [1] */
-    double friction;           /* mu [1] */
+    enum damping_mass damping_mass;
+    double damping_factor; /* gamma_t/gamma_n [1] in place of z_t, else negative */
+    double friction;       /* mu [1] */
+    enum slip_rule slip;
+    enum lever lever;
+    enum friction_cap cap;
+    bool rescale; /* Hertz: no cycle of loading gives energy (default true) */
     enum rolling_model rolling;
     double rolling_friction;  /* mu_r [1] */
     double rolling_damping;   /* eta_r [1], EPSD */

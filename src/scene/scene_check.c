@@ -77,13 +77,27 @@ static void check_hertz(struct scene_reader *reader, int k)
     free(law);
 }
 
+/* What the law along the normal asks of friction. */
+static void check_tangential(
+    struct scene_reader *reader, const struct contact *contact, const char *tangential)
+{
+    char *ratio = fail_format("%s.stiffness_ratio", tangential),
+         *rescale = fail_format("%s.rescale", tangential);
+    if (scene_check_is_given(reader, tangential) && !scene_check_is_given(reader, ratio) &&
+        !scene_issue_is_below(reader, tangential))
+        scene_issue_on(reader, tangential, "missing key 'stiffness_ratio' (law: linear)");
+    if (scene_check_is_given(reader, rescale) && !contact->rescale)
+        scene_issue_on(reader, rescale, "false is only valid with 'normal.law: hertz'");
+    free(ratio);
+    free(rescale);
+}
+
 static void check_contact(struct scene_reader *reader, int k)
 {
     const struct contact *contact = &reader->scene->contact[k];
     char *path = fail_format("contacts[%d]", k), *normal = fail_format("%s.normal", path),
          *tangential = fail_format("%s.tangential", path);
-    char *law = fail_format("%s.law", normal),
-         *ratio = fail_format("%s.stiffness_ratio", tangential);
+    char *law = fail_format("%s.law", normal);
     bool both = contact->between[0] >= 0 && contact->between[1] >= 0;
     if (!scene_check_is_given(reader, normal)) {
         static const char *const PART[] = {"tangential", "rolling", "binding"};
@@ -95,9 +109,7 @@ static void check_contact(struct scene_reader *reader, int k)
         }
     } else if (scene_check_is_given(reader, law) && !scene_issue_is_below(reader, law)) {
         if (contact->normal_law == NORMAL_HERTZ && both) check_hertz(reader, k);
-        if (contact->normal_law == NORMAL_LINEAR && scene_check_is_given(reader, tangential) &&
-            !scene_check_is_given(reader, ratio) && !scene_issue_is_below(reader, tangential))
-            scene_issue_on(reader, tangential, "missing key 'stiffness_ratio' (law: linear)");
+        if (contact->normal_law == NORMAL_LINEAR) check_tangential(reader, contact, tangential);
     }
     for (int other = 0; other < k && both; other++) {
         const int *a = contact->between, *b = reader->scene->contact[other].between;
@@ -113,7 +125,6 @@ static void check_contact(struct scene_reader *reader, int k)
     free(normal);
     free(tangential);
     free(law);
-    free(ratio);
 }
 
 static bool has_contact(const struct scene *scene, int a, int b)

@@ -116,11 +116,35 @@ const struct scene_key scene_keys[] = {
     .text = "tangential force: spring, dashpot and Coulomb slider"},
 {"contacts[].tangential.stiffness_ratio", KEY_NUMBER, .range = ABOVE_ZERO, .absent = -1,
     .at = AT(contact, stiffness_ratio), .text = "k_t/k_n; needed with law: linear, else Mindlin's"},
-{"contacts[].tangential.damping_ratio", KEY_NUMBER, .fallback = "0", .range = FROM_ZERO,
+{"contacts[].tangential.damping_ratio", KEY_NUMBER, AT_MOST_ONE, .range = FROM_ZERO,
     .at = AT(contact, tangential_damping),
-    .text = "fraction of critical damping z_t: gamma_t = 2 z_t sqrt(k_t (2/7) m*)"},
+    .text = "fraction of critical damping z_t: gamma_t = 2 z_t sqrt(k_t (2/7) m*); without it, and "
+        "without damping_factor, there is no tangential dashpot"},
+{"contacts[].tangential.damping_mass", KEY_CHOICE, .fallback = "surface",
+    .words = "surface|centre", .when = "damping_ratio", .at = AT(contact, damping_mass),
+    .text = "mass in that formula; surface: (2/7) m*, which two surfaces feel whose spheres turn; "
+        "centre: m* as along the normal, with law: hertz gamma_t = 2 sqrt(5/6) z_t sqrt(k_t m*), "
+        "as EDEM and LIGGGHTS define it"},
+{"contacts[].tangential.damping_factor", KEY_NUMBER, AT_MOST_ONE, .range = FROM_ZERO, .absent = -1,
+    .at = AT(contact, damping_factor),
+    .text = "gamma_t/gamma_n, in place of damping_ratio, as LAMMPS defines it"},
 {"contacts[].tangential.friction", KEY_NUMBER, NEEDED, .range = FROM_ZERO,
     .at = AT(contact, friction), .text = "coefficient of sliding friction"},
+{"contacts[].tangential.slip", KEY_CHOICE, .fallback = "spring", .words = "spring|whole",
+    .at = AT(contact, slip),
+    .text = "what slips; spring: the spring is cut to the friction limit; whole: spring and "
+        "dashpot together reach it, and the spring keeps what the dashpot leaves, as in LAMMPS"},
+{"contacts[].tangential.lever", KEY_CHOICE, .fallback = "contact", .words = "contact|radius",
+    .at = AT(contact, lever),
+    .text = "lever arm of friction; contact: the distance to the middle of the overlap; radius: "
+        "the radius, as in gran/hooke/history of LAMMPS, which does not conserve angular momentum"},
+{"contacts[].tangential.rescale", KEY_BOOL, .fallback = "true", .at = AT(contact, rescale),
+    .text = "law: hertz: rescale the spring as its stiffness follows the overlap, so that no cycle "
+        "of loading gives energy; false: F_t = k_t(overlap) xi, as in LIGGGHTS"},
+{"contacts[].tangential.cap", KEY_CHOICE, .fallback = "compression",
+    .words = "compression|magnitude", .at = AT(contact, cap),
+    .text = "friction limit; compression: mu max(F_n, 0); magnitude: mu |F_n|, as in LAMMPS, also "
+        "while the dashpot pulls"},
 {"contacts[].rolling", KEY_MAP, .text = "rolling resistance"},
 {"contacts[].rolling.model", KEY_CHOICE, NEEDED, .words = "|cdt|epsd", .at = AT(contact, rolling),
     .text = "model; cdt: constant directional torque; epsd: elastic-plastic spring-dashpot (for "

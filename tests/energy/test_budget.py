@@ -64,6 +64,10 @@ ALL = (
     FRICTION
     + "\n    rolling: {model: epsd, friction: 0.05, damping_ratio: 0.3}\n    binding: {force: 0.2}"
 )
+TILTED = """
+  - {name: room, material: wall, surface: {box: {min: [0, 0, 0], max: [0.04, 0.04, 0.3]}}}
+  - {name: floor, material: wall, surface: {plane: {point: [0, 0, 0.005], normal: [0.1, 0, 1]}},
+     motion: {oscillation: {amplitude: [0.002, 0, 0.01], frequency: 30 Hz}}}"""
 LOSSES = ["dashpot_normal", "dashpot_tangential", "sliding", "rolling", "bonds"]
 
 
@@ -104,20 +108,19 @@ class Budget(cli.Case):
     def test_moving_wall(self):
         """A floor that tilts to and fro under balls which stick, slip and roll:
         every term of the account takes part."""
-        e = self.budget(
-            [1, 3],
-            law=ALL,
-            walls="""
-  - {name: room, material: wall, surface: {box: {min: [0, 0, 0], max: [0.04, 0.04, 0.3]}}}
-  - {name: floor, material: wall, surface: {plane: {point: [0, 0, 0.005], normal: [0.1, 0, 1]}},
-     motion: {oscillation: {amplitude: [0.002, 0, 0.01], frequency: 30 Hz}}}""",
-        )
+        e = self.budget([1, 3], law=ALL, walls=TILTED)
         self.closes(e, 3e-3)
         self.assertGreater(e["wall_work"][-1], 0.01)
         for name in LOSSES:
             self.assertGreater(e[name][-1], 0, name)
         self.assertGreater(max(e["elastic"]), 0)
         self.assertEqual(set(e["removed"]), {0.0})
+
+    def test_friction_of_other_codes(self):
+        """The same with what LAMMPS takes for friction."""
+        choices = "friction: 0.3, slip: whole, lever: radius, cap: magnitude"
+        e = self.budget([1, 3], law=ALL.replace("friction: 0.3", choices, 1), walls=TILTED)
+        self.closes(e, 3e-3)
 
     def test_wall_that_turns_in_itself(self):
         """Without friction it does no work, to a higher order than that of a step;

@@ -24,7 +24,12 @@ static inline struct contact contact_scene_contact(int a, int b)
     c.stiffness_ratio = k == 1 ? -1 : 0.8;
     if (c.normal_law == NORMAL_LINEAR) c.stiffness_ratio = 0.8;
     c.tangential_damping = WITH_TANGENTIAL_DAMPING && k != 1 ? 0.3 : 0;
+    c.damping_factor = -1;
     c.friction = 0.3 + 0.1 * k;
+    c.slip = WITH_WHOLE_SLIP && k != 1 ? SLIP_WHOLE : SLIP_SPRING;
+    c.lever = WITH_RADIUS_LEVER && k != 1 ? LEVER_RADIUS : LEVER_CONTACT;
+    c.rescale = !(WITH_NO_RESCALE && (k == 0 || c.normal_law == NORMAL_HERTZ));
+    c.cap = WITH_CAP_MAGNITUDE && k != 1 ? CAP_MAGNITUDE : CAP_COMPRESSION;
     c.rolling = WITH_ROLLING_EPSD && k != 1 ? ROLLING_EPSD
                 : WITH_ROLLING_CDT          ? ROLLING_CDT
                                             : ROLLING_NONE;

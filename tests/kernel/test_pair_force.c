@@ -120,8 +120,9 @@ static struct host_pair law_of(const struct test *t, int p)
             contact_pair_of(i->inverse_m, j->inverse_m, (real)i->radius, (real)j->radius),
             (real)STEP);
     else q = parameters_load(t->f.row[row]);
-    host.k = contact_kinematics_pair(
-        D, force_motion(i, j), (real)i->radius, (real)j->radius, (real)STEP);
+    struct kinematics_motion m = force_motion(i, j);
+    m.radius_lever = parameters_radius_lever(q);
+    host.k = contact_kinematics_pair(D, m, (real)i->radius, (real)j->radius, (real)STEP);
     host.h = contact_scene_history(t->state, t->history, CAPACITY, (size_t)p);
     host.r = contact_law(host.k, q, (real)STEP, &host.h);
     return host;

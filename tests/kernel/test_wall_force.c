@@ -186,6 +186,7 @@ static struct host_contact law_of(const struct test *t, int c)
     host.v_wall = g.v;
     m.v = v3_sub(m.v, g.v);
     m.kick = v3_sub(m.kick, g.kick);
+    m.radius_lever = parameters_radius_lever(q);
     host.k = contact_kinematics_wall(
         g.n, g.n_half, own - (real)g.distance, own - (real)g.distance_half, m, own);
     host.r = contact_law(host.k, q, (real)STEP, &host.h);

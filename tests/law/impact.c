@@ -22,6 +22,7 @@ static struct contact_material material(const struct impact *c)
     m.mu = (real)c->mu;
     m.f_b = (real)c->f_b;
     if (c->no_attraction) m.law |= CONTACT_NO_ATTRACTION;
+    m.law |= c->choices;
     return c->mu_r > 0 ? contact_material_rolling(m, (real)c->mu_r, (real)c->k_r, (real)c->eta_r)
                        : m;
 }

@@ -16,6 +16,7 @@ struct impact {
     double k_r;   /* its stiffness ratio, 0: CDT */
     double eta_r;
     double duration; /* in contact times; 0: 1.9 */
+    int choices;     /* CONTACT_ bits besides */
 };
 
 #define IMPACT_SPEED 0.5 /* of approach [m/s] */

@@ -28,8 +28,9 @@ variant_law variant_linear_damped;   /* linear, damped friction */
 variant_law variant_linear_bond;     /* linear, damped friction, binding */
 variant_law variant_linear_cdt;
 variant_law variant_linear_epsd;
-variant_law variant_linear_cut;   /* linear, no attraction */
-variant_law variant_hertz;        /* Hertz, nothing else */
-variant_law variant_hertz_damped; /* Hertz, damped friction */
+variant_law variant_linear_cut;    /* linear, no attraction */
+variant_law variant_hertz;         /* Hertz, nothing else */
+variant_law variant_hertz_damped;  /* Hertz, damped friction */
+variant_law variant_hertz_choices; /* the same, with all that other codes do */
 
 #endif

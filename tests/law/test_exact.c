@@ -24,8 +24,12 @@ static vec3 any3(double scale)
     return v3((real)x, (real)y, (real)z);
 }
 
+#define CHOICES                                                                                    \
+    (CONTACT_WHOLE_SLIP | CONTACT_RADIUS_LEVER | CONTACT_NO_RESCALE | CONTACT_CAP_MAGNITUDE)
+
 struct features {
     int hertz, no_attraction, friction, damped, bond, cdt, epsd;
+    int choices; /* CONTACT_ bits of friction */
 };
 
 /* A pair near touching, sizes within 1:3, with a history that such a pair may have. */
@@ -56,11 +60,12 @@ static struct variant_input any_pair(struct features f)
     c.f_b = f.bond ? (real)0.1 : 0;
     if (f.cdt || f.epsd)
         c = contact_material_rolling(c, (real)0.1, f.epsd ? (real)2.25 : 0, (real)0.2);
-    c.law |= f.no_attraction ? CONTACT_NO_ATTRACTION : 0;
+    c.law |= (f.no_attraction ? CONTACT_NO_ATTRACTION : 0) | f.choices;
     in.p = contact_parameters_of(c,
         contact_pair_of(
             (real)(1e-6 / (r_i * r_i * r_i)), (real)(1e-6 / (r_j * r_j * r_j)), in.r_i, in.r_j),
         in.dt);
+    in.m.radius_lever = parameters_radius_lever(in.p);
     n = v3_scale(1 / r_sqrt(v3_dot(x, x)), x);
     if (any() > -0.5) {
         in.h.state = CONTACT_TOUCHING | (f.bond ? CONTACT_BONDED : 0);
@@ -119,6 +124,8 @@ static void unused_features_leave_the_bits_hertz(void **state)
     (void)state;
     check_variant(variant_hertz, (struct features){.hertz = 1});
     check_variant(variant_hertz_damped, (struct features){.hertz = 1, .friction = 1, .damped = 1});
+    check_variant(variant_hertz_choices,
+        (struct features){.hertz = 1, .friction = 1, .damped = 1, .choices = CHOICES});
 }
 
 /* A pair seen from the other side: everything negated, exactly; n x F_t is the same. */
@@ -158,6 +165,7 @@ static void swap_negates_the_bits(void **state)
     swapped((struct features){.friction = 1, .damped = 1, .bond = 1});
     swapped((struct features){.hertz = 1, .friction = 1, .damped = 1, .epsd = 1});
     swapped((struct features){.friction = 1, .cdt = 1, .no_attraction = 1});
+    swapped((struct features){.hertz = 1, .friction = 1, .damped = 1, .choices = CHOICES});
 }
 
 /* Lever arms add up to the distance: no angular momentum from the pair, beyond rounding. */

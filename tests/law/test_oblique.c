@@ -73,6 +73,19 @@ static void damped_friction_is_second_order(void **state)
     check(&c, known, 1.7);
 }
 
+/* Slip of spring and dashpot together, where the force has no jump: a linear dashpot that starts
+ * beyond the limit winds up the spring at once, which is of first order. */
+static void whole_slip_is_second_order(void **state)
+{
+    static const double known[3] = {4.5e-4, 1.3e-4, 7.8e-6};
+    struct impact c = {.hertz = 1, .z_n = 0.1, .z_t = 0.3, .mu = 0.3, .slant = 0.1, .spin = 0.3};
+    (void)state;
+    c.choices = CONTACT_WHOLE_SLIP;
+    check(&c, known, 1.7);
+    c.slant = 1;
+    check(&c, known, 1.7);
+}
+
 /* Mindlin's stiffness starts with an infinite slope: between 1.5 and 2. */
 static void mindlin_is_nearly_second_order(void **state)
 {
@@ -181,6 +194,7 @@ int main(void)
         cmocka_unit_test(one_to_ten_is_second_order),
         cmocka_unit_test(slip_is_second_order),
         cmocka_unit_test(damped_friction_is_second_order),
+        cmocka_unit_test(whole_slip_is_second_order),
         cmocka_unit_test(mindlin_is_nearly_second_order),
         cmocka_unit_test(gross_slip_linear),
         cmocka_unit_test(gross_slip_hertz),

@@ -47,6 +47,7 @@ static struct contact_kinematics kinematics(const struct two_body *s)
     m.kick = s->plane ? i->kick : v3_sub(i->kick, j->kick);
     m.spun_i = i->spun;
     m.spun_j = s->plane ? zero : j->spun;
+    m.radius_lever = parameters_radius_lever(s->p);
     if (s->plane) {
         vec3 down = v3(0, 0, -1);
         real delta = (real)((preal)i->r - i->x.z);

@@ -150,6 +150,27 @@ static void contacts(void **state)
         "scene.yaml:5:122: contacts[0].rolling.damping_ratio: only valid with 'model: epsd'");
 }
 
+#define SLIDES(keys) ", tangential: {friction: 1, stiffness_ratio: 1, " keys "}}]\n"
+static void choices_of_friction(void **state)
+{
+    struct fixture *f = *state;
+    fixture_expect_one(f,
+        SCENE(MANY "contacts: [{between: [m, m], " ELASTIC SLIDES("rescale: false")),
+        "scene.yaml:5:142: contacts[0].tangential.rescale: false is only valid with 'normal.law: "
+        "hertz'");
+    fixture_expect_one(f,
+        SCENE(MANY
+            "contacts: [{between: [m, m], " ELASTIC SLIDES("damping_ratio: 0, damping_factor: 1")),
+        "scene.yaml:5:151: contacts[0].tangential: only one of 'damping_ratio', 'damping_factor' "
+        "can be given");
+    fixture_expect_one(f,
+        SCENE(MANY "contacts: [{between: [m, m], " ELASTIC SLIDES("damping_mass: centre")),
+        "scene.yaml:5:133: contacts[0].tangential.damping_mass: only valid with 'damping_ratio'");
+    fixture_expect_one(f, SCENE(MANY "contacts: [{between: [m, m], " ELASTIC SLIDES("slip: all")),
+        "scene.yaml:5:139: contacts[0].tangential.slip: unknown word 'all'; expected one of: "
+        "spring, whole");
+}
+
 static void hertz_needs_moduli(void **state)
 {
     struct fixture *f = *state;
@@ -306,6 +327,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST(ten_mistakes),
+        TEST(choices_of_friction),
         TEST(types),
         TEST(what_is_not_here_yet),
         TEST(elements_from_nowhere),

@@ -68,7 +68,12 @@ static void everything_contacts(const struct scene *s)
     assert_true(c[0].normal_law == NORMAL_HERTZ && c[0].restitution == 0.5 &&
                 c[0].damping_ratio == restitution_damping(0.5, true));
     assert_true(c[0].has_tangential && c[0].stiffness_ratio < 0 && c[0].friction == 0.3 &&
-                c[0].tangential_damping == 0.1);
+                c[0].tangential_damping == 0.1 && c[0].damping_factor < 0);
+    assert_true(c[0].damping_mass == DAMPING_MASS_CENTRE && c[0].slip == SLIP_SPRING &&
+                c[0].lever == LEVER_CONTACT && c[0].cap == CAP_COMPRESSION && !c[0].rescale);
+    assert_true(c[1].damping_factor == 0.5 && c[1].tangential_damping == 0 &&
+                c[1].slip == SLIP_WHOLE && c[1].lever == LEVER_RADIUS &&
+                c[1].cap == CAP_MAGNITUDE && c[1].rescale);
     assert_true(c[0].rolling == ROLLING_EPSD && c[0].rolling_friction == 0.05 &&
                 c[0].rolling_damping == 0.3 && c[0].rolling_stiffness == 3);
     assert_true(c[0].binding_force == 2e-3);
