@@ -96,20 +96,20 @@ int main(int argc, char **argv)
     const struct link_strength strength[4] = {
         {4e5, 8e5, 2, 0}, {6e5, 6e5, 0, 0}, {8e5, 4e5, 1, 0}, {10e5, 2e5, 2, 0}};
     bool some = argc > 1 && strcmp(argv[1], "some") == 0;
-    for (int k = 0; k < (some ? 3 : 5); k++)
+    for (int k = 0; k < (some ? 2 : 5); k++)
         check(
             size, bodies_mixed, 2, 2, (struct lattice_options){.turn = true, .scheme = scheme[k]});
-    for (int k = 0; k < (some ? 2 : 5); k++)
+    for (int k = 0; k < (some ? 1 : 5); k++)
         check(size, bodies_mixed, 2, 2,
             (struct lattice_options){.turn = true, .scheme = scheme[k], .strength = strength});
-    check(size, bodies_block, 1, 1, (struct lattice_options){.strength = strength});
+    if (!some) check(size, bodies_block, 1, 1, (struct lattice_options){.strength = strength});
     const double none = HUGE_VAL;
     const struct link_strength principal[4] = {
         {none, none, 0, 2e5}, {none, none, 0, 3e5}, {8e5, 4e5, 1, 0}, {none, none, 0, 2e5}};
     for (int k = 0; k < (some ? 1 : 3); k++)
         check(size, bodies_mixed, 2, 2,
             (struct lattice_options){.turn = true, .scheme = scheme[k], .strength = principal});
-    check(size, bodies_mixed, 2, 2, (struct lattice_options){.real_is_float = true});
+    if (!some) check(size, bodies_mixed, 2, 2, (struct lattice_options){.real_is_float = true});
     check(size, bodies_voxels, 1, 2,
         (struct lattice_options){.turn = true, .real_is_float = true, .position_is_float = true});
     device_free(dev);
