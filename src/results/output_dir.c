@@ -1,6 +1,7 @@
 #include "output_dir.h"
 #include "comm/fail.h"
 #include "base/files.h"
+#include "base/nesting.h"
 #include "frame_list.h"
 #include "log.h"
 #include "output_names.h"
@@ -126,7 +127,12 @@ static void remove_old_series(const char *dir)
     size_t n;
     char *text = files_read(path, &n, error);
     free(path);
+    int line, column;
     if (!text) return;
+    if (nesting_is_too_deep(text, n, &line, &column)) {
+        free(text);
+        return;
+    }
     yaml_parser_t parser;
     yaml_document_t document;
     if (!yaml_parser_initialize(&parser)) fail_stop(EXIT_IO, "out of memory");
@@ -145,6 +151,42 @@ static void remove_old_series(const char *dir)
     }
     yaml_parser_delete(&parser);
     free(text);
+}
+
+/* A folder in the place of a file of this run, or of one that goes: nothing can be replaced then,
+ * and nothing is to be lost. */
+static bool is_blocked(const char *dir, const char *name, struct outcome *outcome)
+{
+    char *path = fail_format("%s/%s", dir, name);
+    struct stat status;
+    bool blocked = lstat(path, &status) == 0 && S_ISDIR(status.st_mode);
+    if (blocked) {
+        errno = EISDIR;
+        fail_with(outcome, EXIT_IO, "replace", path);
+    }
+    free(path);
+    return blocked;
+}
+
+static bool are_blocked(
+    const struct output_request *request, bool is_ours_already, struct outcome *outcome)
+{
+    static const char *const fixed[] = {"scene.yaml", "resolved.yaml", "log.txt", "run.json",
+        "stop", "run.balance.csv", FRAME_LIST_NAME, "trace.json"};
+    bool blocked = false;
+    for (size_t k = 0; k < sizeof fixed / sizeof *fixed - !request->trace && !blocked; k++)
+        blocked = is_blocked(request->dir, fixed[k], outcome);
+    for (int k = 0; k < request->n_measure && !blocked; k++) {
+        char *name = fail_format("%s.csv", request->measure[k]);
+        blocked = is_blocked(request->dir, name, outcome);
+        free(name);
+    }
+    DIR *folder = is_ours_already ? opendir(request->dir) : NULL;
+    for (struct dirent *entry; folder && !blocked && (entry = readdir(folder));)
+        blocked = output_names_are_ours(entry->d_name) &&
+                  is_blocked(request->dir, entry->d_name, outcome);
+    if (folder) closedir(folder);
+    return blocked;
 }
 
 static bool remove_ours(const char *dir, struct outcome *outcome)
@@ -277,6 +319,7 @@ static void create(const struct output_request *request, const char *scene, size
             "'%s' holds %s; --force replaces, -o DIR writes elsewhere", dir, why);
         return;
     }
+    if (are_blocked(request, is_ours_already, outcome)) return;
     if (is_ours_already) {
         remove_old_series(dir);
         if (!remove_ours(dir, outcome)) return;

@@ -6,10 +6,11 @@
 #include <string.h>
 #include <yaml.h>
 
+#include "base/nesting.h"
 #include "comm/fail.h"
 
 /* Aliases could blow a few lines up to any size, or contain themselves. */
-enum { MAX_DEPTH = 64, MAX_NODES = 1000000, MAX_BYTES = 1 << 26 };
+enum { MAX_DEPTH = NESTING_MOST, MAX_NODES = 1000000, MAX_BYTES = 1 << 26 };
 
 struct conversion {
     yaml_document_t *document;
@@ -181,6 +182,11 @@ struct scene_node *scene_yaml_parse(
         length -= 3;
     }
     if (find_bad_character(text, length, error)) return NULL;
+    if (nesting_is_too_deep(text, length, &error->line, &error->column)) {
+        snprintf(error->text, sizeof error->text, "nested too deeply, more than %d levels",
+            NESTING_MOST);
+        return NULL;
+    }
     yaml_parser_t parser;
     yaml_document_t document;
     if (!yaml_parser_initialize(&parser)) fail_stop(EXIT_IO, "out of memory in the YAML parser");

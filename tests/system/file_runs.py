@@ -123,6 +123,30 @@ class Owned(Files):
         self.good("run", "s.yaml", "-o", "d", "--force")
         self.assertEqual(self.names("d", "frame_*"), sorted(copies + frames))
 
+    def test_folder_in_the_way(self):
+        """--force removes nothing where it cannot replace everything."""
+        self.good("run", "s.yaml", "-o", "d")
+        for name in ("m.csv", "run.json", "log.txt", "frame_000001.hdf", "frames.hdf.series"):
+            path = os.path.join(self.dir, "d", name)
+            os.rename(path, path + ".kept")
+            os.mkdir(path)
+            before = self.state()
+            run = self.call("run", "s.yaml", "-o", "d", "--force")
+            self.assertEqual(run.code, 6, run.err)
+            self.assertIn(f"cannot replace 'd/{name}': Is a directory", run.err[0])
+            self.assertEqual(self.state(), before)
+            os.rmdir(path)
+            os.rename(path + ".kept", path)
+        self.good("run", "s.yaml", "-o", "d", "--force")
+
+    def test_list_of_frames_grows(self):
+        """The list is continued in its place, not written anew for each frame."""
+        self.good("run", "s.yaml", "-o", "d", "--set", "output.every=1e-5", "--steps", "40")
+        with open(os.path.join(self.dir, "d", "frames.hdf.series")) as file:
+            listed = json.load(file)["files"]
+        self.assertEqual([entry["name"] for entry in listed], self.names("d", "frame_*"))
+        self.assertEqual(len(listed), 41)
+
     def test_resolved_scene_is_no_run(self):
         os.mkdir(os.path.join(self.dir, "d"))
         resolved = self.call("check", "s.yaml", "--resolved").out
