@@ -8,4 +8,9 @@ import sys
 
 os.environ.setdefault("DEMOCLES_MPIRUN", "mpirun")  # installed: that of the program's MPI
 NAME = pathlib.Path(sys.argv[0]).stem.removeprefix("democles-").replace("-", "_")
-importlib.import_module("democles." + NAME).main()
+try:
+    importlib.import_module("democles." + NAME).main()
+except BrokenPipeError:
+    os._exit(1)  # who read has gone; nothing to say, and nowhere
+except OSError as error:
+    sys.exit(f"{NAME}: {error.filename or 'a file'}: {error.strerror or error}")

@@ -288,7 +288,10 @@ def write_film(options, paths, size):
     ]
     with subprocess.Popen(command, stdin=subprocess.PIPE) as film:
         for k, path in enumerate(paths):
-            film.stdin.write(picture.draw([frames.Frame(path)]).tobytes())
+            try:
+                film.stdin.write(picture.draw([frames.Frame(path)]).tobytes())
+            except BrokenPipeError:  # its own reason stands above
+                sys.exit(f"render: ffmpeg could not write {out}")
             if sys.stdout.isatty():
                 print(f"\rframe {k + 1} of {len(paths)}", end="", flush=True)
         film.stdin.close()
