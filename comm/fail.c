@@ -16,12 +16,37 @@ static int world_rank(void)
     return rank;
 }
 
+enum { LISTENERS = 2, TEXT = 4096 };
+static struct {
+    void (*also)(void *context, int exit_code, const char *text);
+    void *context;
+} listener[LISTENERS];
+
+void fail_tell(void (*also)(void *context, int exit_code, const char *text), void *context)
+{
+    for (int k = 0; k < LISTENERS; k++) {
+        if (also ? listener[k].also != NULL : listener[k].context != context) continue;
+        listener[k].also = also;
+        listener[k].context = also ? context : NULL;
+        return;
+    }
+}
+
+/* An error on the way out is not told: it would come back here. */
+static void tell(int exit_code, const char *text)
+{
+    for (int k = 0; k < LISTENERS; k++) {
+        void (*also)(void *context, int exit_code, const char *text) = listener[k].also;
+        listener[k].also = NULL;
+        if (also) also(listener[k].context, exit_code, text);
+    }
+}
+
 /* One line in one write, so that mpirun cannot put the output of another rank between its
  * pieces. */
-static void print_line(const char *kind, int rank, const char *format, va_list args)
+static void print_line(const char *kind, int rank, const char *text)
 {
-    char text[4096], of_rank[32] = "";
-    vsnprintf(text, sizeof text, format, args);
+    char of_rank[32] = "";
     if (rank > 0) snprintf(of_rank, sizeof of_rank, "rank %d: ", rank);
     fprintf(stderr, "democles: %s: %s%s\n", kind, of_rank, text);
     fflush(stderr);
@@ -30,10 +55,13 @@ static void print_line(const char *kind, int rank, const char *format, va_list a
 _Noreturn void fail_stop(int exit_code, const char *format, ...)
 {
     int rank = world_rank();
+    char text[TEXT];
     va_list args;
     va_start(args, format);
-    print_line("error", rank, format, args);
+    vsnprintf(text, sizeof text, format, args);
     va_end(args);
+    print_line("error", rank, text);
+    tell(exit_code, text);
     fflush(stdout);
     if (rank >= 0) MPI_Abort(MPI_COMM_WORLD, exit_code);
     /* No exit handlers: device libraries may have work under way on other threads. */
@@ -51,10 +79,13 @@ _Noreturn void fail_stop_together(int exit_code, const char *format, ...)
 {
     int rank = world_rank();
     if (rank <= 0) {
+        char text[TEXT];
         va_list args;
         va_start(args, format);
-        print_line("error", 0, format, args);
+        vsnprintf(text, sizeof text, format, args);
         va_end(args);
+        print_line("error", 0, text);
+        tell(exit_code, text);
     }
     fail_leave(exit_code);
 }
@@ -62,10 +93,12 @@ _Noreturn void fail_stop_together(int exit_code, const char *format, ...)
 void fail_warn(const char *format, ...)
 {
     if (world_rank() > 0) return;
+    char text[TEXT];
     va_list args;
     va_start(args, format);
-    print_line("warning", 0, format, args);
+    vsnprintf(text, sizeof text, format, args);
     va_end(args);
+    print_line("warning", 0, text);
 }
 
 void *fail_alloc(size_t bytes)

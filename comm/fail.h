@@ -31,6 +31,11 @@ _Noreturn void fail_stop_together(int exit_code, const char *format, ...)
 /* The same where all has been said: collective, no message. */
 _Noreturn void fail_leave(int exit_code);
 
+/* Besides printing it, fail_stop and fail_stop_together tell an error to `also` before they leave,
+ * on the rank that prints. Up to two of them; NULL takes back what has the context. Not
+ * collective. */
+void fail_tell(void (*also)(void *context, int exit_code, const char *text), void *context);
+
 /* A warning, printed by rank 0 alone. */
 void fail_warn(const char *format, ...) __attribute__((format(printf, 1, 2)));
 

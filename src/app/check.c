@@ -79,9 +79,8 @@ static void print_time(
     double speed = limit_speed(scene, walls, elements), limit = limit_dense(scene, elements, speed);
     double dt = time->step > 0 ? time->step : time->safety * limit;
     if (!(dt > 0 && isfinite(dt))) {
-        printf("\ntime: %g s; `step: auto`: nothing in this scene limits the time step, so give a "
-               "value\n",
-            time->end);
+        printf("\ntime: %g s; `step: auto`: %s, so give a value\n", time->end,
+            limit_missing(scene, elements));
         return;
     }
     if (!(time->end / dt <= SCENE_STEPS_MOST)) {

@@ -69,8 +69,8 @@ struct lattice_cells *lattice_cells_create(const struct scene *scene, struct sce
 void lattice_cells_free(struct lattice_cells *cells);
 
 /* A warning for each body whose volume, or extent where it is a box, the cells miss by more than
- * 1 %, with the nearest sizes of cells that fit a box so well, if there are any; and where it moves
- * too far for single precision. */
+ * 1 %, with the nearest sizes of cells that fit a box so well, if there are any; where it moves
+ * too far for single precision; and where a relaxation ignores its velocity. */
 void lattice_fit_warnings(
     const struct scene *scene, const struct lattice_cells *cells, struct scene_errors *warnings);
 

@@ -108,10 +108,26 @@ static void warn_of_precision(const struct scene *scene, struct scene_errors *wa
     }
 }
 
+static void warn_of_relax(const struct scene *scene, struct scene_errors *warnings)
+{
+    for (int b = 0; b < scene->n_body && scene->lattice.relax; b++) {
+        const struct body *body = &scene->body[b];
+        bool moves = false;
+        for (int a = 0; a < 3; a++)
+            moves |= fabs(body->velocity[a]) > 0 || fabs(body->angular_velocity[a]) > 0;
+        if (moves)
+            scene_errors_add(warnings,
+                "body '%s': its initial velocity has no effect on the state of rest that "
+                "lattice.relax looks for, and is not the velocity that it ends with",
+                body->name);
+    }
+}
+
 void lattice_fit_warnings(
     const struct scene *scene, const struct lattice_cells *cells, struct scene_errors *warnings)
 {
     warn_of_precision(scene, warnings);
+    warn_of_relax(scene, warnings);
     for (int b = 0; b < scene->n_body; b++) {
         struct lattice_fit fit = cells->fit[b];
         double off = fabs(fit.volume - 1);

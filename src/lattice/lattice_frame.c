@@ -8,6 +8,7 @@
 #include "comm/fail.h"
 #include "lattice_fields.h"
 #include "lattice_restore.h"
+#include "run/output.h"
 #include "run/resume.h"
 #include "results/snapshot.h"
 
@@ -137,7 +138,7 @@ void lattice_method_frame(struct sim *s, int64_t index)
         .resolved = s->scene->resolved,
         .scalar = scalar,
         .n_scalar = RESUME_SCALARS};
-    snapshot_write(s->comm, s->options->dir, &frame);
+    output_frame(s, &frame);
     sheet_free(&shown);
     sheet_free(&state);
     free(x);

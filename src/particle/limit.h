@@ -43,6 +43,8 @@ void limit_material(const struct scene *scene, int a, int b, double *row);
  * `walls` may be NULL. */
 double limit_speed(
     const struct scene *scene, const struct walls *walls, const struct elements_host *elements);
+/* Why there is no such bound: what a message about the scene says of it. */
+const char *limit_missing(const struct scene *scene, const struct elements_host *elements);
 /* Bound for the densest packing of these elements [s], Hertz contacts as deep as an impact at
  * `speed` [m/s] makes them; infinity if nothing can ever touch. */
 double limit_dense(const struct scene *scene, const struct elements_host *elements, double speed);

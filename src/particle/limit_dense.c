@@ -246,6 +246,22 @@ static double class_limit(const struct scene *scene, const struct limit_class *a
     return fmin(limit_step(w[0], w[1]), limit_step(w[2], w[3]));
 }
 
+const char *limit_missing(const struct scene *scene, const struct elements_host *elements)
+{
+    int n_class, overflow = 0;
+    struct limit_class *all = limit_classes(scene, elements, &n_class);
+    for (int c = 0; c < n_class; c++) overflow |= !(all[c].w > 0 && isfinite(all[c].w));
+    for (int k = 0; k < scene->n_contact && n_class > 0; k++) {
+        const struct contact *of = &scene->contact[k];
+        struct contact_material m = limit_material_of(scene, of->between[0], of->between[1]);
+        overflow |= m.k_n > 0 ? !(m.k_n < LIMIT_NONE) : m.k_n < 0 || isnan(m.k_n);
+    }
+    free(all);
+    return overflow ? "its masses or stiffnesses are beyond what a number can hold, or so large or "
+                      "small that nothing follows from them"
+                    : "nothing in this scene limits the time step";
+}
+
 double limit_dense(const struct scene *scene, const struct elements_host *elements, double speed)
 {
     int n_class;

@@ -4,6 +4,7 @@
 
 #include "energy.h"
 #include "comm/fail.h"
+#include "run/output.h"
 #include "run/resume.h"
 #include "particle_fields.h"
 #include "results/snapshot.h"
@@ -69,7 +70,7 @@ void particle_frame(struct sim *s, int64_t index)
         .resolved = s->scene->resolved,
         .scalar = scalar,
         .n_scalar = OWN_SCALARS + RESUME_SCALARS};
-    snapshot_write(s->comm, s->options->dir, &frame);
+    output_frame(s, &frame);
     for (int i = 0; i < SHEETS; i++) sheet_free(&sheet[i]);
     free(sheet);
     particles_host_free(h);

@@ -70,9 +70,8 @@ static void set_step(struct sim *s)
     const struct scene_time *t = &s->scene->time;
     s->dt = s->from ? s->from->dt : t->step > 0 ? t->step : t->safety * particle_limit_dense(s);
     if (!(s->dt > 0) || isinf(s->dt))
-        fail_stop_together(EXIT_SCENE,
-            "%s: time.step: auto: nothing in this scene limits the time step; give a value",
-            s->scene->path);
+        fail_stop_together(EXIT_SCENE, "%s: time.step: auto: %s; give a value", s->scene->path,
+            limit_missing(s->scene, s->particle->first));
 }
 
 /* What the run has kept account of it goes on to; what it has not cannot begin now. */
@@ -117,6 +116,19 @@ static void warn_of_overlaps(struct sim *s)
             (long long)all.n, all.share);
 }
 
+/* Of a step that its first contacts may allow, as `check` says it. */
+static void warn_of_step(struct sim *s)
+{
+    double limit = particle_limit_dense(s);
+    if (!(s->dt > limit)) return;
+    log_warn(s->log,
+        "the time step %.4g s exceeds %.4g s, the critical time step of the densest packing of "
+        "these particles at the largest speed that this scene allows: the run %s",
+        s->dt, limit,
+        s->scene->time.allow_unstable ? "continues, as time.allow_unstable asks"
+                                      : "stops when its contacts are as stiff as that");
+}
+
 void particle_warn(struct sim *s)
 {
     struct particle_run *run = s->particle;
@@ -125,5 +137,6 @@ void particle_warn(struct sim *s)
         s->dt, &warnings);
     for (int i = 0; i < warnings.n; i++) log_warn(s->log, "%s", warnings.text[i]);
     scene_errors_free(&warnings);
+    warn_of_step(s);
     warn_of_overlaps(s);
 }

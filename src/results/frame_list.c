@@ -1,9 +1,12 @@
 #include "frame_list.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/files.h"
@@ -19,7 +22,8 @@ struct frame_list {
     const struct comm *comm;
     const char *dir; /* borrowed */
     char *path;
-    int64_t n; /* rank 0 alone */
+    int64_t n;    /* rank 0 alone */
+    int64_t size; /* of the file as this process left it [byte]; 0: it has not written it */
     struct entry {
         int64_t index;
         double time;
@@ -56,14 +60,15 @@ static void read_back(struct frame_list *list, int64_t upto)
     free(text);
 }
 
-static char *text_of(const struct frame_list *list)
+/* The file as a whole; entries from `first` on, with the end of the file. */
+static char *text_of(const struct frame_list *list, int64_t first)
 {
     char *text = NULL;
     size_t n;
     FILE *file = open_memstream(&text, &n);
     if (!file) fail_stop(EXIT_IO, "out of memory");
-    fputs(head, file);
-    for (int64_t i = 0; i < list->n; i++)
+    if (first == 0) fputs(head, file);
+    for (int64_t i = first; i < list->n; i++)
         fprintf(file, "%s\n" ENTRY, i > 0 ? "," : "", (long long)list->entry[i].index,
             list->entry[i].time);
     fputs(tail, file);
@@ -71,13 +76,44 @@ static char *text_of(const struct frame_list *list)
     return text;
 }
 
+/* The text over the end of the file; where there is no room for it the end is as it was. */
+static bool write_end(int fd, const char *text, off_t at)
+{
+    size_t n = strlen(text);
+    if (pwrite(fd, text, n, at) == (ssize_t)n) return true;
+    if (pwrite(fd, tail, sizeof tail - 1, at) < 0 || ftruncate(fd, at + (off_t)sizeof tail - 1))
+        fail_warn("the list of frames is not whole: %s", strerror(errno));
+    return false;
+}
+
+/* Writes the newest entry over the end of the file, which then follows it: a list that is written
+ * anew for each of its frames costs the square of their number. Small enough for one write, so a
+ * reader sees the list before or after. False: there is no room, or the file is not as this process
+ * left it. */
+static bool write_newest(struct frame_list *list)
+{
+    struct stat status;
+    int fd = list->size > 0 ? open(list->path, O_WRONLY | O_NOFOLLOW | O_CLOEXEC) : -1;
+    if (fd < 0) return false;
+    char *text = text_of(list, list->n - 1);
+    off_t at = (off_t)(list->size - (int64_t)sizeof tail + 1);
+    bool is_mine = fstat(fd, &status) == 0 && S_ISREG(status.st_mode) && status.st_nlink == 1 &&
+                   status.st_size == list->size;
+    bool good = is_mine && write_end(fd, text, at);
+    if (close(fd)) good = false;
+    if (good) list->size = at + (int64_t)strlen(text);
+    free(text);
+    return good;
+}
+
 /* Rank 0 acts, all agree. */
-static void write_file(const struct frame_list *list)
+static void write_file(struct frame_list *list, bool is_longer)
 {
     char error[FILES_ERROR_SIZE] = "";
-    if (list->comm->rank == 0) {
-        char *text = text_of(list);
-        files_replace(list->path, text, strlen(text), error);
+    if (list->comm->rank == 0 && (!is_longer || !write_newest(list))) {
+        char *text = text_of(list, 0);
+        if (files_replace(list->path, text, strlen(text), error))
+            list->size = (int64_t)strlen(text);
         free(text);
     }
     comm_bcast(list->comm, error, sizeof error, 0);
@@ -91,7 +127,7 @@ struct frame_list *frame_list_create(const struct comm *comm, const char *dir, i
     list->dir = dir;
     list->path = fail_format("%s/" FRAME_LIST_NAME, dir);
     if (comm->rank == 0 && upto >= 0) read_back(list, upto);
-    if (upto >= 0) write_file(list); /* later frames have gone */
+    if (upto >= 0) write_file(list, false); /* later frames have gone */
     return list;
 }
 
@@ -105,10 +141,10 @@ void frame_list_free(struct frame_list *list)
 
 void frame_list_add(struct frame_list *list, int64_t index, double time)
 {
-    bool known = false;
-    for (int64_t i = 0; i < list->n; i++) known |= list->entry[i].index == index;
-    if (!known && list->comm->rank == 0) append(list, index, time);
-    write_file(list);
+    bool is_new =
+        list->comm->rank == 0 && !(list->n > 0 && list->entry[list->n - 1].index >= index);
+    if (is_new) append(list, index, time);
+    write_file(list, is_new && list->n > 1);
 }
 
 bool frame_list_is_ours(const char *path)

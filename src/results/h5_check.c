@@ -2,6 +2,7 @@
 #include "digest.h"
 #include "comm/fail.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -28,6 +29,16 @@ uint64_t h5_check_sum(enum column_type type, const void *data, int64_t n, int64_
     for (int64_t i = 0; i < n; i++)
         sum += digest_mix(digest_mix((uint64_t)(begin + i) + DIGEST_G) ^ bits_at(type, data, i));
     return sum;
+}
+
+bool h5_check_finite(enum column_type type, const void *data, int64_t n)
+{
+    bool finite = true;
+    if (type == COLUMN_F64)
+        for (int64_t i = 0; i < n; i++) finite &= isfinite(((const double *)data)[i]) != 0;
+    if (type == COLUMN_F32)
+        for (int64_t i = 0; i < n; i++) finite &= isfinite(((const float *)data)[i]) != 0;
+    return finite;
 }
 
 uint64_t h5_check_add(uint64_t all, enum column_type type, const void *data, int64_t n)
@@ -58,7 +69,7 @@ static enum column_type type_of(hid_t stored, hid_t *memory)
 
 /* Adds up rows [begin, end) of a dataset, some at a time. NULL, or what is wrong. */
 static const char *sum_rows(hid_t dataset, hid_t memory, enum column_type type,
-    const hsize_t shape[2], hsize_t begin, hsize_t end, uint64_t *sum)
+    const hsize_t shape[2], hsize_t begin, hsize_t end, bool finite, uint64_t *sum)
 {
     enum { PIECE = 1 << 24 }; /* [byte] read at once */
     size_t row_bytes = shape[1] * H5Tget_size(memory), per_row = row_bytes / column_type_size(type);
@@ -66,20 +77,21 @@ static const char *sum_rows(hid_t dataset, hid_t memory, enum column_type type,
     hid_t space = H5Dget_space(dataset);
     int rank = H5Sget_simple_extent_ndims(space);
     void *data = fail_alloc((end - begin < step ? end - begin : step) * row_bytes);
+    const char *wrong = NULL;
     bool good = true;
-    for (hsize_t at = begin; good && at < end; at += step) {
+    for (hsize_t at = begin; good && !wrong && at < end; at += step) {
         hsize_t start[2] = {at, 0}, count[2] = {end - at < step ? end - at : step, shape[1]};
         hid_t here = H5Screate_simple(rank, count, NULL);
         good = H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL) >= 0 &&
                H5Dread(dataset, memory, here, space, H5P_DEFAULT, data) >= 0;
         H5Sclose(here);
-        if (good)
-            *sum +=
-                h5_check_sum(type, data, (int64_t)(count[0] * per_row), (int64_t)(at * per_row));
+        int64_t n = (int64_t)(count[0] * per_row);
+        if (good) *sum += h5_check_sum(type, data, n, (int64_t)(at * per_row));
+        if (good && finite && !h5_check_finite(type, data, n)) wrong = "it holds NaN or infinity";
     }
     free(data);
     H5Sclose(space);
-    return good ? NULL : "cannot be read";
+    return good ? wrong : "cannot be read";
 }
 
 bool h5_check_number(hid_t at, const char *object, const char *name, hid_t memory, void *value)
@@ -111,7 +123,7 @@ static bool lies_in_file(hid_t dataset, hsize_t n)
 }
 
 static const char *sum_part(
-    hid_t dataset, hid_t stored, hid_t space, int part, int n_part, uint64_t *sum)
+    hid_t dataset, hid_t stored, hid_t space, int part, int n_part, bool finite, uint64_t *sum)
 {
     hsize_t shape[2] = {0, 1};
     int rank = H5Sget_simple_extent_ndims(space);
@@ -133,12 +145,14 @@ static const char *sum_part(
                             : NULL;
     hsize_t begin = shape[0] * (hsize_t)part / (hsize_t)n_part,
             end = shape[0] * ((hsize_t)part + 1) / (hsize_t)n_part;
-    if (!wrong && begin < end) wrong = sum_rows(dataset, memory, type, shape, begin, end, sum);
+    if (!wrong && begin < end)
+        wrong = sum_rows(dataset, memory, type, shape, begin, end, finite, sum);
     H5Tclose(memory);
     return wrong;
 }
 
-const char *h5_check_part(hid_t dataset, int part, int n_part, uint64_t *sum, uint64_t *expected)
+const char *h5_check_part(
+    hid_t dataset, int part, int n_part, bool finite, uint64_t *sum, uint64_t *expected)
 {
     *sum = *expected = 0;
     if (H5Aexists(dataset, "checksum") <= 0) return "it has no checksum";
@@ -147,7 +161,7 @@ const char *h5_check_part(hid_t dataset, int part, int n_part, uint64_t *sum, ui
     hid_t stored = H5Dget_type(dataset), space = H5Dget_space(dataset);
     const char *wrong = stored < 0 || space < 0
                             ? "its header cannot be read"
-                            : sum_part(dataset, stored, space, part, n_part, sum);
+                            : sum_part(dataset, stored, space, part, n_part, finite, sum);
     if (stored >= 0) H5Tclose(stored);
     if (space >= 0) H5Sclose(space);
     return wrong;

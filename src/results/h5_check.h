@@ -17,8 +17,12 @@ uint64_t h5_check_add(uint64_t all, enum column_type type, const void *data, int
 
 /* Reads one of n_part parts of the rows of a dataset (any of the column types, or a fixed-length
  * string) and gives its sum; those of all parts have to add up to `expected`, the attribute
- * `checksum`. Not collective. Returns NULL, or why that cannot be told, as static text. */
-const char *h5_check_part(hid_t dataset, int part, int n_part, uint64_t *sum, uint64_t *expected);
+ * `checksum`. finite: all numbers have to be. Not collective. Returns NULL, or why that cannot be
+ * told, as static text. */
+const char *h5_check_part(
+    hid_t dataset, int part, int n_part, bool finite, uint64_t *sum, uint64_t *expected);
+/* Whether n numbers are finite; integers always are. */
+bool h5_check_finite(enum column_type type, const void *data, int64_t n);
 /* What is said where they do not add up. */
 extern const char h5_check_wrong[];
 

@@ -80,6 +80,14 @@ bool log_is_ours(const char *dir)
     return same;
 }
 
+/* Where there is room left: an error may be that there is none. */
+static void take_error(void *context, int exit_code, const char *text)
+{
+    struct log *log = context;
+    fprintf(log->file, "error: %s\nexit code %d\n", text, exit_code);
+    fflush(log->file);
+}
+
 void log_attach(struct log *log, const char *dir, bool append, const char *head)
 {
     if (!log->speaks) return;
@@ -93,11 +101,13 @@ void log_attach(struct log *log, const char *dir, bool append, const char *head)
     if (log->early) to_file(log, log->early);
     free(log->early);
     log->early = NULL;
+    fail_tell(take_error, log);
 }
 
 void log_free(struct log *log)
 {
     if (!log) return;
+    fail_tell(NULL, log);
     if (log->file && fclose(log->file))
         fail_stop(EXIT_IO, "cannot write '%s': %s", log->path, strerror(errno));
     free(log->path);

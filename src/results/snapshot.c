@@ -1,5 +1,6 @@
 #include "snapshot.h"
 #include "comm/fail.h"
+#include "h5_check.h"
 #include "h5_write.h"
 
 #include <stdio.h>
@@ -22,6 +23,19 @@ int64_t snapshot_index(const char *name)
     bool same = !strcmp(name, own);
     free(own);
     return same ? index : -1;
+}
+
+bool snapshot_is_finite(const struct comm *comm, const struct frame *frame)
+{
+    const struct table *table[] = {&frame->points, frame->state};
+    int32_t wrong = 0;
+    for (int t = 0; t < 2; t++)
+        for (int k = 0; k < (t == 0 ? 1 : table[t]->n_column); k++) {
+            const struct column *c = &table[t]->column[k];
+            wrong |= !h5_check_finite(c->type, c->data, table[t]->n_row * c->width);
+        }
+    comm_or_i32(comm, &wrong, 1);
+    return !wrong;
 }
 
 static int64_t row_bytes(const struct table *table)

@@ -51,6 +51,10 @@ struct frame {
  * stop with EXIT_IO. */
 void snapshot_write(const struct comm *comm, const char *dir, const struct frame *frame);
 
+/* Whether positions and the first table of the state, what moves, are finite on all ranks: a frame
+ * from which a run can go on. Collective. */
+bool snapshot_is_finite(const struct comm *comm, const struct frame *frame);
+
 /* `DIR/frame_000123.hdf` in fresh memory, owned by the caller. */
 char *snapshot_path(const char *dir, int64_t index);
 /* The number of a frame by its name in DIR, as snapshot_path writes it and in no other way

@@ -8,6 +8,7 @@
 #include "measures.h"
 #include "results/frame_list.h"
 #include "results/output_dir.h"
+#include "results/snapshot.h"
 #include "record.h"
 #include "resume.h"
 #include "base/signals.h"
@@ -123,6 +124,15 @@ bool output_stop_wanted(struct sim *s)
         if (output_dir_stop_asked(s->options->dir)) out->stop_seen = true;
     }
     return out->stop_seen;
+}
+
+void output_frame(struct sim *s, const struct frame *frame)
+{
+    if (!snapshot_is_finite(s->comm, frame))
+        output_stop_numerics(s,
+            "the last state holds NaN: positions or velocities are not numbers, and there is no "
+            "frame of it");
+    snapshot_write(s->comm, s->options->dir, frame);
 }
 
 _Noreturn void output_stop_numerics(struct sim *s, const char *what, ...)

@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+struct frame;
 struct sim;
 struct outputs;
 
@@ -23,6 +24,9 @@ void output_write(struct sim *s, bool last);
 /* A signal, the file `stop`, or --max-time: on this rank, looked at now and then. Not
  * collective. */
 bool output_stop_wanted(struct sim *s);
+/* snapshot_write; a state that is not finite is no frame and ends the run, for those before to stay
+ * the ones to go on from. */
+void output_frame(struct sim *s, const struct frame *frame);
 /* Ends the run because the numbers are no good: run.json is written, exit code EXIT_NUMERICS on all
  * ranks. Frames that are there stay. */
 _Noreturn void output_stop_numerics(struct sim *s, const char *what, ...)

@@ -185,27 +185,49 @@ void record_features(struct report *report, const struct feature_row *row, const
         if (row->name) report_integer(report, row->name, feature_table_value(row, features));
 }
 
+/* Which run of what this is. */
+static void add_head(struct report *r, const struct sim *s)
+{
+    char *precision = scene_key_word("precision", (int)s->scene->precision),
+         *hash = fail_format("%016lx", s->scene->hash);
+    report_text(r, "version", DEMOCLES_VERSION);
+    report_text(r, "git", DEMOCLES_GIT);
+    report_text(r, "scene_hash", hash);
+    report_text(r, "title", s->scene->title);
+    report_text(r, "method", s->ops->name);
+    report_text(r, "precision", precision);
+    /* particles: leapfrog */
+    report_text(
+        r, "scheme", lattice_schemes_table((enum lattice_scheme)s->scene->time.scheme)->name);
+    report_integer(r, "ranks", s->comm->n_rank);
+    free(precision);
+    free(hash);
+}
+
+void record_error(void *sim, int exit_code, const char *text)
+{
+    struct sim *s = sim;
+    if (s->is_recorded) return;
+    struct report *r = report_create();
+    add_head(r, s);
+    report_integer(r, "steps", s->step);
+    report_number(r, "time_end", (double)s->step * s->dt);
+    report_text(r, "error", text);
+    report_integer(r, "exit", exit_code);
+    report_text(r, "digest", NULL);
+    report_write(r, s->comm, s->options->dir);
+    report_free(r);
+}
+
 bool record_write(struct sim *s, int exit_code, bool observed)
 {
     char digest[17] = "";
-    char *precision = scene_key_word("precision", (int)s->scene->precision);
     struct report *r = report_create();
     uint64_t bits = 0;
     bool whole = observed && s->ops->digest(s, &bits);
     digest_text(bits, digest);
     if (observed && !whole) exit_code = EXIT_NUMERICS;
-    report_text(r, "version", DEMOCLES_VERSION);
-    report_text(r, "git", DEMOCLES_GIT);
-    char *hash = fail_format("%016lx", s->scene->hash);
-    report_text(r, "scene_hash", hash);
-    report_text(r, "title", s->scene->title);
-    report_text(r, "method", s->ops->name);
-    report_text(r, "precision", precision);
-    free(precision);
-    /* particles: leapfrog */
-    report_text(
-        r, "scheme", lattice_schemes_table((enum lattice_scheme)s->scene->time.scheme)->name);
-    report_integer(r, "ranks", s->comm->n_rank);
+    add_head(r, s);
     add_devices(r, s);
     balance_report(s->balance, r, &s->timers, s->step - s->begun_at, s->ops->n_owned(s));
     report_begin(r, "features");
@@ -226,7 +248,7 @@ bool record_write(struct sim *s, int exit_code, bool observed)
         print_digest(s, whole ? digest : NULL);
     }
     report_free(r);
-    free(hash);
+    s->is_recorded = true;
     if (!written && exit_code == EXIT_DONE) fail_stop(EXIT_IO, "run.json could not be written");
     return whole || !observed;
 }

@@ -104,6 +104,7 @@ struct sim *sim_create(struct scene *scene, struct comm *comm, struct log *log,
     s->dev->profile = options->profile; /* a trace wants the queues' times alone */
     share_cores(s);
     s->output = output_create(s);
+    if (comm->rank == 0) fail_tell(record_error, s);
     s->dev->dump_dir = options->dir;
     log_print(log, "%s", scene->title ? scene->title : scene->name);
     record_print_devices(s);
@@ -251,6 +252,7 @@ void sim_require_double(const struct sim *s)
 void sim_free(struct sim *s)
 {
     if (!s) return;
+    fail_tell(NULL, s);
     s->ops->free(s);
     output_free(s->output);
     trace_free(s->trace);

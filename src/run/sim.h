@@ -63,6 +63,7 @@ struct sim {
     struct account account;
     struct halo_traffic sent_before; /* by this rank before the first step */
     double started;                  /* timer_now at the start */
+    bool is_recorded;                /* run.json has been written */
 };
 
 /* Reads nothing: the scene is there. ops: of the scene's method. Opens the device, builds kernels,

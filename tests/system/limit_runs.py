@@ -117,6 +117,50 @@ bodies: [{name: bar, material: a, cell: 1 mm, velocity: [SPEED, 0, 0],
             self.assertEqual(self.warnings(scene, "--precision", "mixed"), [])
 
 
+class Steps(cli.Case):
+    """`run` says of the step what `check` says, whatever touches at the start."""
+
+    def test_far_over_the_limit(self):
+        wall = "surface: {plane: {point: [0, 0, 0], normal: [0, 0, 1]}}"
+        self.put("e.csv", "x,y,z,radius,vz\n0,0,0.2,0.05,-1\n0.2,0,0.2,0.05,0\n")
+        over = r"exceeds (\d\S+) s, the critical time step of the densest packing"
+        for step, is_over in (("1.5e-2", True), ("1e-3", False)):
+            self.put(
+                "s.yaml",
+                SCENE.replace("WALL", wall).replace(
+                    "{end: 2e-4, step: 1e-5}", "{end: 3e-2, step: " + step + "}"
+                ),
+            )
+            said = self.call("check", "s.yaml").out
+            self.assertEqual("the time step exceeds it" in said, is_over, said)
+            run = self.call("run", "s.yaml", "-o", "d" + step, "--quiet")
+            self.assertEqual(run.code, 0, run.err)
+            found = re.search(over, "\n".join(run.err))
+            self.assertEqual(found is not None, is_over, run.err)
+            if found:
+                self.assertIn(f"critical time step {found[1]} s", said)
+
+    def test_numbers_that_overflow(self):
+        wall = "surface: {plane: {point: [0, 0, 0], normal: [0, 0, 1]}}"
+        self.put("e.csv", "x,y,z,radius\n0,0,0.2,0.05\n")
+        scene = SCENE.replace("WALL", wall).replace("step: 1e-5", "step: auto")
+        for density, stiffness, what in (
+            ("1e-308", "1e4", "masses or stiffnesses are beyond"),
+            ("2500", "1e308", "masses or stiffnesses are beyond"),
+        ):
+            self.put("s.yaml", scene.replace("2500", density).replace("1e4", stiffness))
+            run = self.call("check", "s.yaml")
+            self.assertIn(what, run.out + "".join(run.err), (density, stiffness))
+            self.assertNotIn("nothing in this scene", run.out)
+
+    def test_velocity_of_what_relaxes(self):
+        bar = Single.BAR.replace("SPEED", "VELOCITY") + "lattice: {relax: {tolerance: 1e-6}}\n"
+        for velocity, n in (("0", 0), ("1", 1)):
+            self.put("s.yaml", bar.replace("VELOCITY", velocity))
+            said = self.call("check", "s.yaml").out
+            self.assertEqual(said.count("warning: body 'bar': its initial velocity has no"), n)
+
+
 class Texts(cli.Case):
     def test_resume_reads_what_run_accepts(self):
         """Characters that YAML takes for line breaks, or only as escapes, and the longest name."""
@@ -153,6 +197,10 @@ class Bounded(cli.Case):
         self.assertEqual(run.returncode, 3, run.stderr)
         self.assertRegex(run.stderr, what)
         self.assertLess(time.monotonic() - began, 30)
+
+    def test_depth(self):
+        for text in ("{" * 100000, "[" * 100000, "- " * 100000, "a: {b: " * 50000):
+            self.refused(text, "nested too deeply")
 
     def test_sites_of_a_fill(self):
         fill = SCENE.replace("WALL", PLANE).replace(

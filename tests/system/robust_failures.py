@@ -2,9 +2,12 @@
 """Runs that cannot be: each has one message, its exit code, leaves nothing half-done, and no rank
 waits for ever. Own argument: results_tool."""
 import os
+import pathlib
 import resource
 import shutil
 import subprocess
+
+import numpy
 
 import parallel_runs
 import scene_parts
@@ -122,8 +125,31 @@ class Numerics(Failures):
         dust["measure"], dust["precision"] = [], "single"
         with open(os.path.join(self.dir, "dust.csv"), "w") as file:
             file.write("x,y,z,radius\n0,0,0,1e-18\n0,0,0.1,0.001\n")
-        run = self.fails(self.put(dust), 3, 5, "step 3, t = 3e-05 s: the last state holds NaN")
+        run = self.fails(self.put(dust), 3, 5, "step 0, t = 0 s: the last state holds NaN")
         self.failed_record(run, 5)
+        self.assertEqual(run.frames(), [])
+
+    def test_state_without_numbers_is_no_frame(self):
+        """Far over its limit, a frame in each step: those before stay, and `resume` takes one."""
+        contact = {"normal": {**scene_parts.LINEAR, "damping_ratio": 0}}
+        room = [scene_parts.box("room", (0, 0, 0), (0.03, 0.03, 0.03))]
+        block = scene_parts.block("b", (0, 0, 0), (0.03, 0.03, 0.03), 0.005, velocity=(1, 1, 1))
+        scene = scene_parts.scene(2000, 1, contact, [block], room)
+        scene["time"]["allow_unstable"], scene["measure"] = True, []
+        scene["output"] = {"every": 1}
+        run = self.run_scene(self.put(scene), 1)
+        self.assertEqual(run.code, 5, run.err)
+        self.failed_record(run, 5)
+        self.assertGreater(self.whole(run.dir), 1)
+        for path in run.frames():
+            self.assertTrue(numpy.isfinite(parallel_runs.frames.Frame(path).points).all(), path)
+        log = pathlib.Path(run.dir, "log.txt").read_text()
+        self.assertRegex(log, r"error: step \d+, .* not numbers")
+        again = subprocess.run(
+            [parallel_runs.DEMOCLES, "resume", run.dir], capture_output=True, text=True
+        )
+        self.assertEqual(again.returncode, 5)
+        self.assertIn(f"resumes from step {len(run.frames()) - 1},", again.stdout)
 
     def test_lost_element(self):
         free = scene_parts.scene(
@@ -199,6 +225,11 @@ class Environment(Failures):
             for ranks in (1, 3):
                 run = self.fails(scene, ranks, 6, "No space left on device", name=f"disk/{ranks}")
                 self.assertGreaterEqual(self.whole(run.dir), 1)
+                record = run.record()
+                self.assertEqual((record["exit"], record["ranks"]), (6, ranks))
+                self.assertIn("No space left on device", record["error"])
+                log = pathlib.Path(run.dir, "log.txt").read_text()
+                self.assertRegex(log, "error: .*No space left on device")
                 subprocess.run(["rm", "-rf", run.dir], check=True)
         finally:
             subprocess.run(["umount", "-l", disk], check=True)
