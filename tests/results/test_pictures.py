@@ -323,19 +323,21 @@ class Folder(unittest.TestCase):
         )
         self.assertGreater(numpy.ptp(pyplot.imread(self.dir / "outflow.png")), 0.5)
 
-    def test_folder_that_cannot_be_written(self):
+    def test_file_that_cannot_be_written(self):
         """One line that names the file, no traceback; /proc lets nobody make a file."""
-        subprocess.run([TOOL, "record", self.dir], check=True, capture_output=True)
-        (self.dir / "outflow.png").unlink(missing_ok=True)
-        (self.dir / "outflow.png").symlink_to("/proc/nowhere.png")
-        for script, arguments in (("plot.py", []), ("render.py", ["-o", "/proc/nowhere.png"])):
-            run = subprocess.run(
-                [SCRIPTS / script, self.dir, *arguments], capture_output=True, text=True
-            )
+        other = self.dir / "other"
+        other.mkdir()
+        (other / "m.csv").write_text("time [s],a [J]\n0,1\n1,2\n")
+        (other / "m.png").symlink_to("/proc/nowhere.png")
+        for script, arguments in (
+            ("plot.py", [other]),
+            ("render.py", [self.dir, "-o", "/proc/nowhere.png"]),
+        ):
+            run = subprocess.run([SCRIPTS / script, *arguments], capture_output=True, text=True)
             self.assertEqual((run.returncode, run.stdout), (1, ""), run.stderr)
             self.assertEqual(len(run.stderr.splitlines()), 1, run.stderr)
             self.assertIn(".png: No such file or directory", run.stderr)
-        (self.dir / "outflow.png").unlink()
+        shutil.rmtree(other)
 
     def test_series_that_a_crash_cut_short(self):
         (self.dir / "cut.csv").write_text('time [s],a [J],"b, c [1]"\n0,1,2\n1,2,3\n2,3')
