@@ -40,6 +40,21 @@ struct contact_result {
     real loss_b;  /* broken bond */
 };
 
+/* The part `share` of a contact. */
+LAW struct contact_result contact_result_share(struct contact_result r, real share)
+{
+    r.force = v3_scale(share, r.force);
+    r.couple = v3_scale(share, r.couple);
+    r.moment = v3_scale(share, r.moment);
+    r.elastic *= share;
+    r.loss_n *= share;
+    r.loss_t *= share;
+    r.loss_s *= share;
+    r.loss_r *= share;
+    r.loss_b *= share;
+    return r;
+}
+
 /* The contact on its way through the step. */
 struct contact_step {
     struct normal_step normal;

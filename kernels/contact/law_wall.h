@@ -228,9 +228,13 @@ LAW struct wall_closest wall_closest(struct wall_primitive w, pvec3 x)
  *   1. wall_closest of every candidate;
  *   2. drop candidate t if a candidate s has wall_hides(s, t);
  *   3. of those left drop t if a lower one, itself left, has wall_coincides with it.
- * What stays are the contacts (where distance < radius, or a bond holds). Candidates further away
- * than t can neither hide it nor coincide with it, so the answer does not depend on how far the
- * list reaches.
+ * What stays are the contacts (where distance < radius, or a bond holds); law_fillet.h says how
+ * those of a smooth surface act together. Candidates further away than t can neither hide it nor
+ * coincide with it, so the answer does not depend on how far the list reaches.
+ *
+ * Of walls that are flush (a gate in a floor) an edge or corner of one is no minimum either where
+ * its point lies on another that is nearer: wall_is_flush, which needs no common number. The same
+ * point is met once, whoever has it.
  *
  * A shared edge or vertex has one number in the whole mesh; edges and vertices are numbered
  * together and never alike. */
@@ -298,19 +302,34 @@ LAW int wall_coincides(struct wall_closest s, struct wall_closest t, preal radiu
     return p3_dot(gap, gap) < reach * reach;
 }
 
-/* History passes from one triangle to the next as a sphere moves over a mesh, or friction would
- * restart at every edge. The contact that begins takes the spring of one that ended in the same
- * step, on a triangle with a common vertex, if the normals agree: cos > 0.9. Of several the largest
- * cosine, then the lowest triangle; an old contact gives its history away once. Normals in the same
- * frame. */
-LAW int wall_is_neighbour(struct wall_features s, struct wall_features t)
+/* Coordinates of two files agree to so much of their size. */
+#if POSITION_IS_FLOAT
+#define WALL_ROUNDING 3e-6f
+#else
+#define WALL_ROUNDING 1e-6
+#endif
+
+/* Whether a point of one wall lies on a primitive s of another. on: wall_closest of s, seen from
+ * that point; size: largest coordinate of the point [m]. */
+LAW int wall_is_flush(struct wall_closest on, preal size, preal radius)
 {
-    return wall_shares(s, t.corner_a) || wall_shares(s, t.corner_b) || wall_shares(s, t.corner_c);
+    preal reach = WALL_MERGE * radius + WALL_ROUNDING * size;
+    return on.distance < reach && on.distance > -reach;
 }
 
-LAW int wall_hands_over(int old_ended, int new_began, int are_neighbours, vec3 n_old, vec3 n_new)
+/* History passes from one triangle to the next as a sphere moves over a mesh, or friction would
+ * restart at every edge. The contact that begins takes the spring of one that ended in the same
+ * step if the normals agree: cos > 0.9. Of several the largest cosine, then the lowest triangle; an
+ * old contact gives its history away once. Both are places of one sphere less than 26 degrees
+ * apart, so no common edge or vertex is asked for: a step may cross several thin triangles. From
+ * wall to wall only where the points are closer than a tenth of the radius. Seen from the same
+ * centre, in the same frame. */
+LAW int wall_hands_over(
+    struct wall_closest old, struct wall_closest begun, int same_wall, preal radius)
 {
-    return old_ended && new_began && are_neighbours && 10 * v3_dot(n_old, n_new) > 9;
+    pvec3 gap = p3_sub(old.D, begun.D);
+    return 10 * p3_dot(old.n, begun.n) > 9 &&
+           (same_wall || 100 * p3_dot(gap, gap) < radius * radius);
 }
 
 /* Rigid motion. A point q of the wall's frame is at p = R q + t; rows of the rotation R. */

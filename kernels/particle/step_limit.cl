@@ -11,6 +11,7 @@
  * lint: WITH_MATERIALS requires WITH_SPIN */
 #include "limit_element.h"
 #include "contact/law_wall.h"
+#include "wall_near.h"
 #include "wall_pose.h"
 #include "contact/contact_memory.h"
 #include "contact/law_limit.h"
@@ -38,8 +39,8 @@ LAW struct limit_sums limit_add_pair(struct limit_sums s, struct limit_element a
 
 #if WITH_WALLS
 LAW struct limit_sums limit_add_wall(struct limit_sums s, struct limit_element a,
-    struct wall_primitive w, __global const preal *pose, struct contact_material c, real dt,
-    real share)
+    struct wall_primitive w, struct fillet_plane other, __global const preal *pose,
+    struct contact_material c, real dt, real share)
 {
     struct limit_ends ends;
     struct wall_closest k;
@@ -54,8 +55,9 @@ LAW struct limit_sums limit_add_wall(struct limit_sums s, struct limit_element a
     (void)pose;
     k = wall_closest(w, a.x);
 #endif
-    n = v3_of_p3(k.n);
-    delta = (real)((preal)a.r - k.distance);
+    struct fillet_plane met = fillet_of(fillet_plane(k.n, k.distance), other, (preal)a.r);
+    n = v3_of_p3(met.n);
+    delta = (real)((preal)a.r - met.distance);
     ends.w_i = a.w;
     ends.r_i = a.r;
     ends.w_j = ends.r_j = 0;
@@ -85,7 +87,7 @@ __kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void step_limit(int 
     __global const int *wall_of, __global const int *wall_material, __global const preal *pose,
 #endif
 #if WITH_TRIANGLE
-    __global const int *keep,
+    __global const real *keep, __global const int *partner, __global const preal *near,
 #endif
     __global const real *table, __global real *partial, __global long *partial_gid)
 {
@@ -110,9 +112,12 @@ __kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void step_limit(int 
         for (int k = wall_begin[e]; k < wall_begin[e + 1]; k++) {
             int p = candidate[k], w = wall_of[p];
 #if WITH_TRIANGLE
-            if (!keep[k]) continue;
+            if (!(keep[k] > 0)) continue;
+            struct fillet_plane other = wall_partner(near, partner[k]);
+#else
+            struct fillet_plane other = fillet_plane(p3(0, 0, 1), WALL_FAR);
 #endif
-            s = limit_add_wall(s, a, WALL_PRIMITIVE(primitive, p), pose + w * POSE_WIDTH,
+            s = limit_add_wall(s, a, WALL_PRIMITIVE(primitive, p), other, pose + w * POSE_WIDTH,
                 material_load(table + MATERIAL_WIDTH * (a.kind * n_material + wall_material[w])),
                 dt, share);
         }

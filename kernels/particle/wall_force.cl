@@ -25,6 +25,7 @@
 #include "contact/contact_memory.h"
 #include "particle_words.h"
 #include "wall_geometry.h"
+#include "wall_near.h"
 
 /* Rows of local memory: real, then preal; results take the place of the former. */
 #define SPIN_KICKS (WITH_TANGENTIAL_DAMPING || WITH_ROLLING)
@@ -32,14 +33,16 @@
 #define L_KICK 3
 #define L_W (WITH_KICK ? 6 : 3)
 #define L_SPUN (L_W + (WITH_ROTATION ? 3 : 0))
-#define L_MASS (L_SPUN + (SPIN_KICKS ? 3 : 0)) /* 1/m */
-#define L_KIND (L_MASS + (WITH_SIZES ? 1 : 0)) /* row of the table */
-#define L_ROWS (L_KIND + (WITH_TABLE ? 1 : 0))
+#define L_MASS (L_SPUN + (SPIN_KICKS ? 3 : 0))  /* 1/m */
+#define L_KIND (L_MASS + (WITH_SIZES ? 1 : 0))  /* row of the table */
+#define L_SHARE (L_KIND + (WITH_TABLE ? 1 : 0)) /* of wall_keep.cl */
+#define L_ROWS (L_SHARE + (WITH_TRIANGLE ? 1 : 0))
 #define ROWS (L_ROWS > 6 ? L_ROWS : 6)
 #define P_X 0
 #define P_RADIUS 3
 #define P_PRIMITIVE 4
-#define P_ROWS 16
+#define P_PARTNER 16 /* n, distance */
+#define P_ROWS (WITH_TRIANGLE ? 20 : 16)
 #define LOC(row) loc[(row)*BATCH + l]
 #define PLACE(row) place[(row)*BATCH + l]
 
@@ -58,6 +61,26 @@
     wall_geometry_moving(primitive, x, v, pose + wall[l] * POSE_WIDTH, dt)
 #else
 #define GEOMETRY(primitive, x, v) wall_geometry(primitive, x, v, dt)
+#endif
+
+#if WITH_TRIANGLE
+#define SHARE LOC(L_SHARE)
+#define VALLEY(g, v, radius)                                                                       \
+    wall_geometry_valley(                                                                          \
+        g, fillet_plane(ROW3_LOAD(p3, place, P_PARTNER, l), PLACE(P_PARTNER + 3)), v, radius, dt)
+
+/* What wall_keep.cl found. */
+LAW void wall_load_near(__global const preal *near, int partner, real keep, __local preal *place,
+    __local real *loc, size_t l)
+{
+    struct fillet_plane other = wall_partner(near, partner);
+    ROW3_STORE(place, P_PARTNER, l, other.n.x, other.n.y, other.n.z);
+    PLACE(P_PARTNER + 3) = other.distance;
+    LOC(L_SHARE) = keep;
+}
+#else
+#define SHARE ((real)1)
+#define VALLEY(g, v, radius) g
 #endif
 
 /* One element and one primitive. */
@@ -122,7 +145,8 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void wall_forc
     __global const preal *restrict pose,
 #endif
 #if WITH_TRIANGLE
-    __global const int *restrict keep,
+    __global const real *restrict keep, __global const int *restrict partner,
+    __global const preal *restrict near,
 #endif
 #if WITH_HISTORY
     __global int *restrict state, __global real *restrict history,
@@ -154,6 +178,9 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void wall_forc
 #if WITH_MOVING
         wall[l] = wall_of[k];
 #endif
+#if WITH_TRIANGLE
+        wall_load_near(near, partner[base + l], keep[base + l], place, loc, l);
+#endif
 #if WITH_TABLE
         real kind = WITH_MATERIALS ? motion[(size_t)e * MOTION_STRIDE + SPIN_AT + 3] : (real)0;
         LOC(L_KIND) = kind * (real)n_material + (real)wall_material[wall_of[k]];
@@ -164,19 +191,19 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void wall_forc
     FOR_BATCH (l, n) {
         real radius = (real)PLACE(P_RADIUS);
         vec3 v = ROW3_LOAD(v3, loc, L_V, l);
-        struct wall_geometry g = GEOMETRY(wall_stored(place, l), ROW3_LOAD(p3, place, P_X, l), v);
+        struct wall_geometry g =
+            VALLEY(GEOMETRY(wall_stored(place, l), ROW3_LOAD(p3, place, P_X, l), v), v, radius);
         struct contact_parameters p = PARAMETERS;
         struct contact_history h = HISTORY_LOAD(base, planes, l);
-#if WITH_TRIANGLE
-        int counts = keep[base + l];
-        g.distance = counts ? g.distance : (preal)2 * (preal)radius;
-        h.state = counts ? h.state : 0;
-#endif
+        real share = SHARE;
+        g.distance = share > 0 ? g.distance : (preal)2 * (preal)radius;
+        h.state = share > 0 ? h.state : 0;
         struct kinematics_motion m = wall_motion(g, loc, l);
         m.radius_lever = parameters_radius_lever(p);
         struct contact_kinematics k = contact_kinematics_wall(
             g.n, g.n_half, radius - (real)g.distance, radius - (real)g.distance_half, m, radius);
         struct contact_result r = contact_law(k, p, dt, &h);
+        r = contact_result_share(r, share > 0 ? share : (real)1);
         HISTORY_STORE(h, base, planes, l);
         LEDGER_ADD(r, base, planes, l);
 #if WITH_WALL_WORK

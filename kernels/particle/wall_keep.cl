@@ -1,20 +1,127 @@
-/* Meshes only: of the triangles near an element, which are contacts, and the passing on of friction
- * from one triangle to the next (law_wall.h). One work-item per element, because the candidates of
- * one element decide about each other.
+/* Scenes with meshes only: of the primitives near an element, which are contacts, how they act
+ * together, and the passing on of friction from one triangle to the next (law_wall.h,
+ * law_fillet.h). One work-item per element, because the candidates of one element decide about each
+ * other.
+ *
+ * near [n_candidate][4]: unit vector to the closest point, and the distance [m]; partner
+ * [n_candidate]: the candidate with which it forms a valley, -1 without one; keep [n_candidate]:
+ * share with which a contact acts, 0 where a deeper one acts for it, -1 where it is no local
+ * minimum of the distance.
  *
  * lint: WITH_TRIANGLE requires WITH_WALLS */
 #include "element.h"
-#include "contact/law_wall.h"
-#include "wall_pose.h"
 #include "contact/contact_memory.h"
+#include "wall_near.h"
+#include "wall_pose.h"
 
-#define CLOSEST(k)                                                                                 \
-    wall_closest_moved(WALL_PRIMITIVE(primitive, candidate[k]),                                    \
-        pose_frame(pose + wall_of[candidate[k]] * POSE_WIDTH), x)
-#define FEATURES(k) WALL_FEATURES(features, candidate[k])
+/* Farther away, in radii, nothing takes part. */
+#define IN_SIGHT ((preal)1.5)
 
-/* keep [n_candidate]: 1 unless hidden by, or the same point as, another triangle of the same
- * wall. */
+/* One element and its candidates first <= k < end. */
+struct wall_sight {
+    __global const int *candidate, *features, *wall_of;
+    __global const preal *primitive, *pose;
+    __global preal *near;
+    __global int *partner; /* the feature until all minima are known */
+    __global real *keep;
+    pvec3 x;
+    preal radius;
+    int first, end;
+};
+
+LAW struct wall_closest wall_seen(struct wall_sight w, int k, pvec3 x)
+{
+    int p = w.candidate[k];
+    return wall_closest_moved(
+        WALL_PRIMITIVE(w.primitive, p), pose_frame(w.pose + w.wall_of[p] * POSE_WIDTH), x);
+}
+
+LAW struct wall_features wall_features_of(struct wall_sight w, int k)
+{
+    return WALL_FEATURES(w.features, w.candidate[k]);
+}
+
+LAW int wall_is_triangle(struct wall_sight w, int k)
+{
+    return w.primitive[WALL_PRIMITIVE_WIDTH * w.candidate[k] + 11] == (preal)WALL_TRIANGLE;
+}
+
+LAW int wall_is_same(struct wall_sight w, int s, int t)
+{
+    return w.wall_of[w.candidate[s]] == w.wall_of[w.candidate[t]];
+}
+
+LAW int wall_is_minimum(struct wall_sight w, int t)
+{
+    struct wall_closest c = wall_near(w.near, w.partner, t);
+    pvec3 point = p3_add(w.x, c.D);
+    preal size = r_max(r_max(fabs(point.x), fabs(point.y)), fabs(point.z));
+    int is_triangle = wall_is_triangle(w, t);
+    if (!(c.distance < w.radius * IN_SIGHT)) return 1;
+    for (int s = w.first; s < w.end; s++) {
+        if (s == t) continue;
+        struct wall_closest d = wall_near(w.near, w.partner, s);
+        if (wall_is_same(w, s, t)) {
+            if (is_triangle &&
+                wall_hides(d, wall_features_of(w, s), c, wall_features_of(w, t), w.radius))
+                return 0;
+        } else if (c.feature != 0 && d.distance < c.distance - WALL_TIE * w.radius &&
+                   wall_is_flush(wall_seen(w, s, point), size, w.radius)) {
+            return 0;
+        }
+        if (s < t && is_triangle && wall_is_triangle(w, s) && w.keep[s] > 0 &&
+            wall_coincides(d, c, w.radius))
+            return 0;
+    }
+    return 1;
+}
+
+/* Share and partner of a local minimum. */
+LAW void wall_join(struct wall_sight w, int t)
+{
+    struct fillet_plane own = wall_plane(w.near, t);
+    preal share = 1, best = own.distance;
+    int other = -1;
+    w.partner[t] = -1;
+    if (!wall_is_triangle(w, t) || !(w.keep[t] >= 0) || !(own.distance < w.radius * IN_SIGHT))
+        return;
+    for (int s = w.first; s < w.end; s++) {
+        if (s == t || !wall_is_triangle(w, s) || w.keep[s] < 0 || !wall_is_same(w, s, t)) continue;
+        struct fillet_plane d = wall_plane(w.near, s), valley = fillet_of(own, d, w.radius);
+        int is_deeper = d.distance < own.distance || (!(own.distance < d.distance) && s < t);
+        if (is_deeper) share *= (preal)1 - fillet_hides(p3_dot(own.n, d.n));
+        if (valley.distance < best) {
+            best = valley.distance;
+            other = s;
+        }
+    }
+    w.keep[t] = (real)share;
+    w.partner[t] = share < (preal)1 ? -1 : other;
+}
+
+#if WITH_HISTORY
+/* Whose history goes to t, which has none; -1: nobody's. */
+LAW int wall_giver(struct wall_sight w, __global const int *state, int t)
+{
+    int giver = -1;
+    preal best = 0;
+    struct wall_closest c = wall_near(w.near, w.partner, t);
+    if (!wall_is_triangle(w, t) || !wall_acts(w.near, w.partner, w.keep, t, w.radius)) return -1;
+    for (int s = w.first; s < w.end; s++) {
+        if (s == t || state[s] == 0 || !wall_is_triangle(w, s) ||
+            wall_acts(w.near, w.partner, w.keep, s, w.radius))
+            continue;
+        struct wall_closest d = wall_near(w.near, w.partner, s);
+        preal cosine = p3_dot(d.n, c.n);
+        if (wall_hands_over(d, c, wall_is_same(w, s, t), w.radius) && cosine > best) {
+            best = cosine;
+            giver = s;
+        }
+    }
+    return giver;
+}
+#endif
+
 __kernel __attribute__((reqd_work_group_size(64, 1, 1))) void wall_keep(int n_owned,
     __global const preal *position, __global const int *begin, __global const int *candidate,
     __global const preal *primitive, __global const int *features, __global const int *wall_of,
@@ -22,55 +129,29 @@ __kernel __attribute__((reqd_work_group_size(64, 1, 1))) void wall_keep(int n_ow
 #if WITH_HISTORY
     int capacity, __global int *state, __global real *history,
 #endif
-    __global int *keep)
+    __global preal *near, __global int *partner, __global real *keep)
 {
     int e = get_global_id(0);
     if (e >= n_owned) return;
     preal4 p = LOAD_POSITION(e);
-    pvec3 x = XYZ(p);
-    preal radius = p.s3;
-    int first = begin[e], end = begin[e + 1];
-    for (int t = first; t < end; t++) {
-        int count = 1;
-        if (primitive[12 * candidate[t] + 11] == (preal)WALL_TRIANGLE) {
-            struct wall_closest c = CLOSEST(t);
-            struct wall_features f = FEATURES(t);
-            if (c.distance < radius * (preal)1.5)
-                for (int s = first; s < end && count; s++) {
-                    if (s == t || wall_of[candidate[s]] != wall_of[candidate[t]]) continue;
-                    struct wall_closest d = CLOSEST(s);
-                    if (wall_hides(d, FEATURES(s), c, f, radius)) count = 0;
-                    if (s < t && keep[s] && wall_coincides(d, c, radius)) count = 0;
-                }
-        }
-        keep[t] = count;
+    struct wall_sight w = {candidate, features, wall_of, primitive, pose, near, partner, keep,
+        XYZ(p), p.s3, begin[e], begin[e + 1]};
+    for (int t = w.first; t < w.end; t++) {
+        struct wall_closest c = wall_seen(w, t, w.x);
+        vstore4((preal4)(c.n.x, c.n.y, c.n.z, c.distance), t, near);
+        partner[t] = c.feature;
     }
+    for (int t = w.first; t < w.end; t++) keep[t] = wall_is_minimum(w, t) ? (real)1 : (real)-1;
+    for (int t = w.first; t < w.end; t++) wall_join(w, t);
 #if WITH_HISTORY
-    for (int t = first; t < end; t++) {
-        if (state[t] != 0 || !keep[t] || primitive[12 * candidate[t] + 11] != (preal)WALL_TRIANGLE)
-            continue;
-        struct wall_closest c = CLOSEST(t);
-        if (!(c.distance < radius)) continue;
-        int giver = -1;
-        preal best = 0;
-        for (int s = first; s < end; s++) {
-            if (s == t || state[s] == 0 || wall_of[candidate[s]] != wall_of[candidate[t]]) continue;
-            struct wall_closest d = CLOSEST(s);
-            int ended = !keep[s] || !(d.distance < radius);
-            preal cosine = p3_dot(d.n, c.n);
-            if (wall_hands_over(ended, 1, wall_is_neighbour(FEATURES(s), FEATURES(t)),
-                    v3_of_p3(d.n), v3_of_p3(c.n)) &&
-                cosine > best) {
-                best = cosine;
-                giver = s;
-            }
-        }
+    for (int t = w.first; t < w.end; t++) {
+        int giver = state[t] == 0 ? wall_giver(w, state, t) : -1;
         if (giver < 0) continue;
         state[t] = state[giver];
         state[giver] = 0;
-        for (int c2 = 0; c2 < HISTORY_WIDTH; c2++) {
-            history[(size_t)c2 * capacity + t] = history[(size_t)c2 * capacity + giver];
-            history[(size_t)c2 * capacity + giver] = 0;
+        for (int c = 0; c < HISTORY_WIDTH; c++) {
+            history[(size_t)c * capacity + t] = history[(size_t)c * capacity + giver];
+            history[(size_t)c * capacity + giver] = 0;
         }
     }
 #endif

@@ -5,6 +5,7 @@
  * wall may move until the next build [m], negative for walls that are not there. */
 #include "element.h"
 #include "remember.h"
+#include "contact/law_fillet.h"
 #include "contact/law_wall.h"
 #include "wall_pose.h"
 
@@ -18,14 +19,17 @@ __kernel __attribute__((reqd_work_group_size(64, 1, 1))) void wall_rows(int n_ow
 {
     int e = get_global_id(0);
     if (e >= n_owned) return;
-    pvec3 x = XYZ(LOAD_POSITION(e));
-    preal own = reach[e];
+    preal4 p = LOAD_POSITION(e);
+    pvec3 x = XYZ(p);
+    /* a triangle takes part in a valley a little beyond the radius */
+    preal own = reach[e], valley = (FILLET_REACH - (preal)1) * p.s3;
     int at = fill ? begin[e] : 0;
     for (int k = 0; k < n_primitive; k++) {
         int w = wall_of[k];
         if (room[w] < 0) continue;
         pvec3 q = wall_to_reference(pose_frame(pose + w * POSE_WIDTH), x);
         preal far = own + room[w];
+        if (primitive[12 * k + 11] == (preal)WALL_TRIANGLE) far += valley;
         __global const preal *b = bounds + 6 * k;
         if (q.x < b[0] - far || q.y < b[1] - far || q.z < b[2] - far || q.x > b[3] + far ||
             q.y > b[4] + far || q.z > b[5] + far)

@@ -96,11 +96,11 @@ static void bind(struct sim *s, struct limit *limit)
             {"table", &limit->table}, {"partial", &limit->partial},
             {"partial_gid", &limit->partial_gid}, {0}});
     if (!w) return;
-    launch_bind_all_if(
-        limit->launch, (const struct launch_binding[]){{"wall_begin", &w->now.begin},
-                           {"candidate", &w->now.candidate}, {"primitive", &w->primitive},
-                           {"wall_of", &w->wall_of}, {"wall_material", &w->material},
-                           {"pose", &w->pose}, {"keep", &w->keep}, {0}});
+    launch_bind_all_if(limit->launch,
+        (const struct launch_binding[]){{"wall_begin", &w->now.begin},
+            {"candidate", &w->now.candidate}, {"primitive", &w->primitive},
+            {"wall_of", &w->wall_of}, {"wall_material", &w->material}, {"pose", &w->pose},
+            {"keep", &w->keep}, {"partner", &w->partner}, {"near", &w->near}, {0}});
 }
 
 /* Of this rank. */

@@ -30,7 +30,8 @@ void particle_bind(struct sim *s)
         (const struct launch_binding[]){{"position", state}, {"motion", state},
             {"candidate", &w->now.candidate}, {"candidate_element", &w->now.element},
             {"primitive", &w->primitive}, {"wall_of", &w->wall_of}, {"pose", &w->pose},
-            {"keep", &w->keep}, {"state", &w->now.state}, {"history", &w->now.history},
-            {"ledger", &w->ledger}, {"wall_material", &w->material}, {"result", &w->result}, {0}});
+            {"keep", &w->keep}, {"partner", &w->partner}, {"near", &w->near},
+            {"state", &w->now.state}, {"history", &w->now.history}, {"ledger", &w->ledger},
+            {"wall_material", &w->material}, {"result", &w->result}, {0}});
     launch_set_count(run->wall_force, "capacity", w->now.capacity);
 }

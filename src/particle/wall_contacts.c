@@ -22,6 +22,8 @@ static const struct buffer_spec own_buffers[] = {
     {"wall room", offsetof(struct wall_contacts, room)},
     {"wall poses", offsetof(struct wall_contacts, pose)},
     {"wall keep", offsetof(struct wall_contacts, keep)},
+    {"wall partners", offsetof(struct wall_contacts, partner)},
+    {"wall planes", offsetof(struct wall_contacts, near)},
     {"wall results", offsetof(struct wall_contacts, result)},
     {"wall ledger", offsetof(struct wall_contacts, ledger)},
     {"wall pose batch", offsetof(struct wall_contacts, batch)}, {0}};
@@ -176,7 +178,11 @@ static void reserve_contacts(struct wall_contacts *w)
     size_t real = particles_real(w->features), capacity = (size_t)l->capacity;
     buffer_reserve(&l->candidate, capacity * sizeof(cl_int));
     buffer_reserve(&l->element, capacity * sizeof(cl_int));
-    buffer_reserve(&w->keep, capacity * sizeof(cl_int));
+    if (w->features->triangle) {
+        buffer_reserve(&w->keep, capacity * real);
+        buffer_reserve(&w->partner, capacity * sizeof(cl_int));
+        buffer_reserve(&w->near, capacity * 4 * particles_preal(w->features));
+    }
     buffer_reserve(&w->result, capacity * WALL_RESULT_WIDTH(true) * real);
     if (w->layout.remembers) {
         buffer_reserve(&l->state, capacity * sizeof(cl_int));
@@ -254,10 +260,11 @@ void wall_contacts_select(struct wall_contacts *w, const struct particles *p)
     struct wall_list *l = &w->now;
     struct launch *k = w->keep_launch;
     launch_set_count(k, "n_owned", l->n_owned);
-    launch_bind_all(k, (const struct launch_binding[]){{"position", &p->field[FIELD_STATE].now},
-                           {"begin", &l->begin}, {"candidate", &l->candidate},
-                           {"primitive", &w->primitive}, {"features", &w->triangle_features},
-                           {"wall_of", &w->wall_of}, {"pose", &w->pose}, {"keep", &w->keep}, {0}});
+    launch_bind_all(
+        k, (const struct launch_binding[]){{"position", &p->field[FIELD_STATE].now},
+               {"begin", &l->begin}, {"candidate", &l->candidate}, {"primitive", &w->primitive},
+               {"features", &w->triangle_features}, {"wall_of", &w->wall_of}, {"pose", &w->pose},
+               {"keep", &w->keep}, {"partner", &w->partner}, {"near", &w->near}, {0}});
     launch_bind_buffer_if(k, "state", &l->state);
     launch_bind_buffer_if(k, "history", &l->history);
     launch_set_count_if(k, "capacity", l->capacity);

@@ -28,13 +28,14 @@ struct wall_contacts {
     struct contact_layout layout;
     struct wall_list now, old;
     struct contact_arrivals arrivals;
-    struct buffer primitive, bounds, triangle_features, wall_of, material, room, pose, keep, result,
+    struct buffer primitive, bounds, triangle_features, wall_of, material, room, pose, result,
         ledger;
-    struct buffer batch;     /* preal [WALL_BATCH][n_wall][POSE_WIDTH] */
-    struct wall_pose *poses; /* [WALL_BATCH][n_wall] on the host */
-    int64_t batch_first;     /* step of the first pose */
-    struct wall_pose *built; /* [n_wall] where the walls were when the lists were built */
-    double *room_host;       /* [n_wall] how far each may go from there [m]; negative: not there */
+    struct buffer keep, partner, near; /* of wall_keep.cl; only with triangles */
+    struct buffer batch;               /* preal [WALL_BATCH][n_wall][POSE_WIDTH] */
+    struct wall_pose *poses;           /* [WALL_BATCH][n_wall] on the host */
+    int64_t batch_first;               /* step of the first pose */
+    struct wall_pose *built;           /* [n_wall] where the walls were when the lists were built */
+    double *room_host; /* [n_wall] how far each may go from there [m]; negative: not there */
     struct launch *rows, *carry, *leave, *keep_launch, *copy;
 };
 

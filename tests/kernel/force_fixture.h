@@ -6,7 +6,7 @@
 #include "contact_scene.h"
 #include "record_reader.h"
 
-enum { FORCE_BUFFERS = 13, FORCE_ROWS = N_MATERIAL * N_MATERIAL };
+enum { FORCE_BUFFERS = 15, FORCE_ROWS = N_MATERIAL * N_MATERIAL };
 
 /* First member of what a test knows. */
 struct force_run {

@@ -26,7 +26,9 @@ struct test {
     struct record element[N_ELEMENT];
     preal primitive[N_PRIMITIVE][WALL_PRIMITIVE_WIDTH], pose[N_WALL][POSE_WIDTH];
     int wall_of[N_PRIMITIVE], wall_material[N_WALL], candidate[N_CANDIDATE],
-        of_element[N_CANDIDATE], keep[N_CANDIDATE], state[CAPACITY];
+        of_element[N_CANDIDATE], partner[N_CANDIDATE], state[CAPACITY];
+    real keep[N_CANDIDATE];
+    preal near[N_CANDIDATE][4];
     real history[(HISTORY_WIDTH + 1) * CAPACITY];
     double ledger[LEDGER_WIDTH * CAPACITY]; /* of the host */
 };
@@ -102,13 +104,32 @@ static void set_element(struct test *t, int e)
     t->of_element[e] = e;
 }
 
+/* Every second one forms a valley with a plane that is tilted a little and about as near. */
+static void set_partner(struct test *t, int k)
+{
+    const struct record *e = &t->element[t->of_element[k]];
+    struct wall_frame frame = pose_frame(t->pose[t->wall_of[t->candidate[k]]]);
+    struct wall_closest c =
+        wall_closest_moved(primitive_of(t, t->candidate[k]), frame, p3(e->x[0], e->x[1], e->x[2]));
+    double n[3], square = 0;
+    for (int a = 0; a < 3; a++) {
+        n[a] = (double)(a == 0 ? c.n.x : a == 1 ? c.n.y : c.n.z) + 0.1 * force_any();
+        square += n[a] * n[a];
+    }
+    t->partner[k] = k % 2 ? k : -1;
+    for (int a = 0; a < 3; a++) t->near[k][a] = (preal)(n[a] / sqrt(square));
+    t->near[k][3] = c.distance + (preal)(1e-6 * force_any());
+}
+
 static void set_candidate(struct test *t, int k)
 {
     if (k >= N_ELEMENT) { /* further ones, mostly far away */
         t->of_element[k] = (int)force_between(0, N_ELEMENT);
         t->candidate[k] = (int)force_between(0, N_PRIMITIVE);
     }
-    t->keep[k] = force_any() > -0.8;
+    t->keep[k] = force_any() > -0.8 ? (real)force_between(0.1, 2) : (real)(k % 2 - 1);
+    if (t->keep[k] > 1) t->keep[k] = 1;
+    set_partner(t, k);
     force_history(t->state, t->history, CAPACITY, (size_t)k);
     for (int c = 0; c < 3 && WITH_WALL_WORK && t->state[k]; c++)
         t->history[(WALL_FORCE_AT + c) * CAPACITY + k] = (real)(0.1 * force_any());
@@ -130,7 +151,8 @@ static void set_arguments(struct test *t)
         {"history", sizeof t->history, t->history}, {"ledger", sizeof t->ledger, t->ledger},
         {"wall_material", sizeof t->wall_material, t->wall_material},
         {"table", sizeof f->table, f->table},
-        {"result", RESULT_ROOM * CAPACITY * sizeof(real), NULL}};
+        {"result", RESULT_ROOM * CAPACITY * sizeof(real), NULL},
+        {"partner", sizeof t->partner, t->partner}, {"near", sizeof t->near, t->near}};
     for (int b = 0; b < FORCE_BUFFERS; b++)
         fixture_bind(
             f->dev, f->launch, &f->buffer[b], array[b].name, array[b].bytes, array[b].data);
@@ -179,7 +201,13 @@ static struct host_contact law_of(const struct test *t, int c)
     struct wall_geometry g = WITH_MOVING ? wall_geometry_moving(w, x, v, t->pose[wall], (real)STEP)
                                          : wall_geometry(w, x, v, (real)STEP);
     host.h = contact_scene_history(t->state, t->history, CAPACITY, (size_t)c);
-    if (WITH_TRIANGLE && !t->keep[c]) {
+    if (WITH_TRIANGLE && t->partner[c] >= 0) {
+        const preal *near = t->near[t->partner[c]];
+        g = wall_geometry_valley(
+            g, fillet_plane(p3(near[0], near[1], near[2]), near[3]), v, own, (real)STEP);
+    }
+    bool counts = !WITH_TRIANGLE || t->keep[c] > 0;
+    if (!counts) {
         g.distance = 2 * (preal)own; /* out of reach */
         host.h.state = 0;
     }
@@ -190,6 +218,7 @@ static struct host_contact law_of(const struct test *t, int c)
     host.k = contact_kinematics_wall(
         g.n, g.n_half, own - (real)g.distance, own - (real)g.distance_half, m, own);
     host.r = contact_law(host.k, q, (real)STEP, &host.h);
+    if (WITH_TRIANGLE && counts) host.r = contact_result_share(host.r, t->keep[c]);
     return host;
 }
 

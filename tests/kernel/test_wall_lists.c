@@ -10,6 +10,7 @@
 #include "particle/owners_message.h"
 
 enum { N = 700, GRID = 5, N_TRIANGLE = 2 * GRID * GRID, N_WALL = 7, STEP_NOW = 3 };
+enum { N_PRIMITIVE = 2 * N_TRIANGLE + 10 };
 static const double radius = 0.3, dt = 1e-3;
 static struct lists lists;
 static struct wall wall[N_WALL];
@@ -71,6 +72,7 @@ static void make_walls(void)
     scene = scratch_scene(wall, N_WALL);
     walls = walls_create(&scene, &errors);
     assert_non_null(walls);
+    assert_int_equal(walls->n_primitive, N_PRIMITIVE);
 }
 
 static struct wall_frame frame_of(int w)
@@ -130,8 +132,8 @@ static void build(const struct crowd *c)
 
 /* What the device has: candidates of element e are begin[e] <= k < begin[e + 1]. */
 struct found {
-    int *begin, *candidate, *element, *keep, *state;
-    real *history;
+    int *begin, *candidate, *element, *partner, *state;
+    real *history, *keep;
 };
 
 static struct found read_found(void)
@@ -139,16 +141,18 @@ static struct found read_found(void)
     struct wall_list *l = &contacts->now;
     size_t bytes = (size_t)(l->capacity * contacts->layout.history) * sizeof(real);
     struct found f = {lists_ints(&l->begin, N + 1), lists_ints(&l->candidate, l->n),
-        lists_ints(&l->element, l->n), lists_ints(&contacts->keep, l->n),
-        lists_ints(&l->state, l->capacity), fail_alloc(bytes)};
+        lists_ints(&l->element, l->n), lists_ints(&contacts->partner, l->n),
+        lists_ints(&l->state, l->capacity), fail_alloc(bytes),
+        fail_alloc((size_t)l->n * sizeof(real))};
     buffer_read(&l->history, 0, bytes, f.history);
+    buffer_read(&contacts->keep, 0, (size_t)l->n * sizeof(real), f.keep);
     return f;
 }
 
 static void free_found(struct found *f)
 {
-    void *all[] = {f->begin, f->candidate, f->element, f->keep, f->state, f->history};
-    for (int k = 0; k < 6; k++) free(all[k]);
+    void *all[] = {f->begin, f->candidate, f->element, f->partner, f->state, f->history, f->keep};
+    for (int k = 0; k < 7; k++) free(all[k]);
 }
 
 static void candidates_within_reach(void **unused)
@@ -164,9 +168,11 @@ static void candidates_within_reach(void **unused)
             int w = walls->wall_of[k];
             double room = contacts->room_host[w];
             assert_true((room < 0) == (w == 6) && (room > 0) == (w == 2));
+            preal far = c.reach[e] + (preal)room;
+            if (walls->features[6 * k] >= 0) far += (FILLET_REACH - (preal)1) * c.element[e].radius;
             if (room < 0 ||
                 !(wall_closest(primitive_of(k), wall_to_reference(frame_of(w), centre(&c, e)))
-                        .distance < c.reach[e] + (preal)room))
+                        .distance < far))
                 continue;
             assert_true(at < contacts->now.n && f.candidate[at] == k && f.element[at] == e);
             at++;
@@ -178,35 +184,45 @@ static void candidates_within_reach(void **unused)
     crowd_free(&c);
 }
 
-/* Of the triangles that an element overlaps those that the rules of law_wall.h leave. */
+/* What the rules of law_wall.h and law_fillet.h make of the candidates of one element. */
+static int contacts_of(
+    const struct crowd *c, const struct found *f, int e, struct reference_contact *out)
+{
+    const preal *at = c->element[e].x;
+    double x[3] = {(double)at[0], (double)at[1], (double)at[2]};
+    return reference_contacts(walls, wall_contacts_pose(contacts, STEP_NOW), x,
+        (double)c->element[e].radius, f->candidate + f->begin[e], f->begin[e + 1] - f->begin[e],
+        out);
+}
+
+/* The local minima, their shares and partners. */
 static void one_contact_per_minimum(void **unused)
 {
     (void)unused;
     struct crowd c = make();
-    int n_kept = 0, n_dropped = 0;
+    int n_kept = 0, n_dropped = 0, n_shared = 0, n_left = 0, n_valley = 0;
     build(&c);
     wall_contacts_select(contacts, lists.particles);
     struct found f = read_found();
-    struct wall_closest *closest = fail_alloc((size_t)walls->n_primitive * sizeof *closest);
-    int *kept = fail_alloc((size_t)walls->n_primitive * sizeof *kept);
+    struct reference_contact minimum[N_PRIMITIVE];
     for (int e = 0; e < N; e++) {
-        double x[3] = {
-            (double)c.element[e].x[0], (double)c.element[e].x[1], (double)c.element[e].x[2]};
-        int n = reference_contacts(walls, wall_contacts_pose(contacts, STEP_NOW), x,
-            (double)c.element[e].radius, f.candidate + f.begin[e], f.begin[e + 1] - f.begin[e],
-            kept, closest);
+        int n = contacts_of(&c, &f, e, minimum);
         for (int k = f.begin[e], m = 0; k < f.begin[e + 1]; k++) {
-            bool wanted = m < n && kept[m] == f.candidate[k];
+            bool wanted = m < n && minimum[m].primitive == f.candidate[k];
+            real share = wanted ? (real)minimum[m].share : -1;
+            int other = wanted ? minimum[m].partner : -1;
+            fixture_same("share", k, f.keep[k], share);
+            assert_int_equal(f.partner[k] < 0 ? -1 : f.candidate[f.partner[k]],
+                other < 0 ? -1 : minimum[other].primitive);
+            n_kept += wanted;
+            n_dropped += !wanted;
+            n_shared += share > 0 && share < 1;
+            n_left += wanted && !(share > 0);
+            n_valley += other >= 0;
             m += wanted;
-            if (!(closest_of(&c, e, f.candidate[k]).distance < c.element[e].radius)) continue;
-            assert_int_equal(f.keep[k], wanted);
-            n_kept += f.keep[k];
-            n_dropped += !f.keep[k];
         }
     }
-    assert_true(n_kept > N && n_dropped > N);
-    free(kept);
-    free(closest);
+    assert_true(n_kept > N && n_dropped > N && n_left > 20 && n_shared > 10 && n_valley > 10);
     free_found(&f);
     crowd_free(&c);
 }
@@ -231,25 +247,24 @@ static void write_histories(const struct crowd *c, struct found *f)
         (size_t)(l->capacity * contacts->layout.history) * sizeof *f->history, f->history);
 }
 
-/* Who gives its history to t, as law_wall.h says; state: as it is when t's turn comes. -1:
- * nobody. */
-static int giver_of(const struct crowd *c, const struct found *f, int e, int t, const int *state)
+/* Who gives its history to t, or -1, as law_wall.h says; state: as it is when its turn comes. */
+static int giver_of(const struct crowd *c, const struct found *f, int e, int t, const int *state,
+    const struct reference_contact *minimum, int n)
 {
-    struct wall_closest own = closest_of(c, e, f->candidate[t]);
-    struct wall_features features = WALL_FEATURES(walls->features, f->candidate[t]);
+    struct wall_closest own = closest_of(c, e, f->candidate[t]), other;
+    preal own_radius = c->element[e].radius, best = 0;
     int giver = -1;
-    preal best = 0;
-    if (walls->features[6 * f->candidate[t]] < 0 || state[t] != 0 || !f->keep[t] ||
-        !(own.distance < c->element[e].radius))
+    if (walls->features[6 * f->candidate[t]] < 0 || state[t] != 0 ||
+        !reference_acts(minimum, n, f->candidate[t], own_radius))
         return -1;
     for (int s = f->begin[e]; s < f->begin[e + 1]; s++) {
-        if (state[s] == 0 || walls->wall_of[f->candidate[s]] != walls->wall_of[f->candidate[t]])
+        if (state[s] == 0 || walls->features[6 * f->candidate[s]] < 0 ||
+            reference_acts(minimum, n, f->candidate[s], own_radius))
             continue;
-        struct wall_closest other = closest_of(c, e, f->candidate[s]);
-        int ended = !f->keep[s] || !(other.distance < c->element[e].radius);
-        int near = wall_is_neighbour(WALL_FEATURES(walls->features, f->candidate[s]), features);
+        other = closest_of(c, e, f->candidate[s]);
         preal cosine = p3_dot(other.n, own.n);
-        if (!wall_hands_over(ended, 1, near, v3_of_p3(other.n), v3_of_p3(own.n)) ||
+        if (!wall_hands_over(other, own,
+                walls->wall_of[f->candidate[s]] == walls->wall_of[f->candidate[t]], own_radius) ||
             !(cosine > best))
             continue;
         best = cosine;
@@ -272,9 +287,11 @@ static void friction_goes_over_the_mesh(void **unused)
         *from = fail_alloc((size_t)contacts->now.capacity * sizeof *from);
     memcpy(state, before.state, (size_t)contacts->now.capacity * sizeof *state);
     for (int k = 0; k < contacts->now.n; k++) from[k] = state[k] ? k : -1;
-    for (int e = 0; e < N; e++)
+    struct reference_contact minimum[N_PRIMITIVE];
+    for (int e = 0; e < N; e++) {
+        int n = contacts_of(&c, &f, e, minimum);
         for (int t = f.begin[e]; t < f.begin[e + 1]; t++) {
-            int giver = giver_of(&c, &f, e, t, state);
+            int giver = giver_of(&c, &f, e, t, state, minimum, n);
             if (giver < 0) continue;
             state[t] = state[giver];
             state[giver] = 0;
@@ -282,6 +299,7 @@ static void friction_goes_over_the_mesh(void **unused)
             from[giver] = -1;
             n_passed++;
         }
+    }
     for (int k = 0; k < contacts->now.n; k++) {
         assert_int_equal(f.state[k], state[k]);
         n_stayed += from[k] == k;

@@ -69,17 +69,18 @@ static void close_sheet(struct sheet *sheet)
 /* Contacts of a sphere at x with candidates up to radius (1 + skin), normals into n. */
 static int count_contacts(const struct sheet *sheet, const double x[3], double skin, pvec3 *n)
 {
-    int candidate[N_TRIANGLE], kept[N_TRIANGLE], n_candidate = 0, n_contact = 0;
-    struct wall_closest closest[N_TRIANGLE];
+    int candidate[N_TRIANGLE], n_candidate = 0, n_contact = 0;
+    struct reference_contact contact[N_TRIANGLE];
     for (int k = 0; k < N_TRIANGLE; k++) {
-        int one_kept;
-        reference_contacts(sheet->walls, &sheet->pose, x, radius, &k, 1, &one_kept, closest);
-        if ((double)closest[0].distance <= radius * (1 + skin)) candidate[n_candidate++] = k;
+        reference_contacts(sheet->walls, &sheet->pose, x, radius, &k, 1, contact);
+        if ((double)contact[0].closest.distance <= radius * (1 + skin))
+            candidate[n_candidate++] = k;
     }
-    int n_kept = reference_contacts(
-        sheet->walls, &sheet->pose, x, radius, candidate, n_candidate, kept, closest);
-    for (int k = 0; k < n_kept; k++)
-        if ((double)closest[k].distance < radius) n[n_contact++] = closest[k].n;
+    int n_minimum =
+        reference_contacts(sheet->walls, &sheet->pose, x, radius, candidate, n_candidate, contact);
+    for (int k = 0; k < n_minimum; k++)
+        if (contact[k].share > 0 && (double)contact[k].valley.distance < radius)
+            n[n_contact++] = contact[k].valley.n;
     return n_contact;
 }
 
@@ -183,23 +184,25 @@ static void test_rim(void **unused)
     }
 }
 
-/* History goes from a contact that ended to one that began on a neighbour with nearly the same
- * normal, and to no other. */
+static struct wall_closest seen(double nx, double nz, double distance)
+{
+    struct wall_closest c = {.n = p3((preal)nx, 0, (preal)nz), .distance = (preal)distance};
+    c.D = p3_scale(c.distance, c.n);
+    return c;
+}
+
+/* History goes to a contact with nearly the same normal, and to no other; from wall to wall only
+ * where the points are close. */
 static void test_hand_over(void **unused)
 {
     (void)unused;
-    struct wall_features s = wall_features(0, 1, 2, 10, 11, 12),
-                         by_edge = wall_features(1, 3, 4, 12, 11, 13),
-                         by_corner = wall_features(5, 6, 7, 10, 14, 15),
-                         apart = wall_features(7, 8, 9, 16, 17, 18);
-    vec3 n = v3(0, 0, 1), tilted = v3((real)0.5, 0, (real)0.8660254);
-    assert_true(wall_is_neighbour(s, by_edge) && wall_is_neighbour(by_edge, s) &&
-                wall_is_neighbour(s, by_corner));
-    assert_false(wall_is_neighbour(s, apart));
-    assert_true(wall_hands_over(1, 1, 1, n, n));
-    assert_false(wall_hands_over(0, 1, 1, n, n) || wall_hands_over(1, 0, 1, n, n) ||
-                 wall_hands_over(1, 1, 0, n, n));
-    assert_false(wall_hands_over(1, 1, 1, n, tilted));
+    struct wall_closest old = seen(0, 1, 0.3), near = seen(0.05, 0.99875, 0.3),
+                        tilted = seen(0.5, 0.8660254, 0.3), far = seen(0.2, 0.98, 0.3);
+    assert_true(wall_hands_over(old, near, 1, (preal)radius));
+    assert_true(wall_hands_over(old, near, 0, (preal)radius));
+    assert_true(wall_hands_over(old, far, 1, (preal)radius));
+    assert_false(wall_hands_over(old, far, 0, (preal)radius));
+    assert_false(wall_hands_over(old, tilted, 1, (preal)radius));
 }
 
 int main(void)

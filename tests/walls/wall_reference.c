@@ -3,6 +3,7 @@
 
 #include "comm/fail.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 static pvec3 point_of(const double *p)
@@ -25,45 +26,114 @@ static struct wall_primitive primitive_of(const struct walls *walls, int k)
     return WALL_PRIMITIVE(row, 0);
 }
 
-static bool is_hidden(const struct walls *walls, const int *candidate, int n,
-    const struct wall_closest *all, int t, preal radius)
+static bool is_triangle(const struct walls *walls, int primitive)
 {
-    if (all[t].feature == 0 || walls->features[6 * candidate[t]] < 0) return false;
-    struct wall_features own = WALL_FEATURES(walls->features, candidate[t]);
-    for (int s = 0; s < n; s++)
-        if (wall_hides(all[s], WALL_FEATURES(walls->features, candidate[s]), all[t], own, radius))
-            return true;
-    return false;
+    return walls->features[6 * primitive] >= 0;
 }
 
-/* Whether a kept triangle of the same wall has the same point. */
-static bool is_double(const struct walls *walls, const int *kept, int n_kept,
-    const struct wall_closest *closest, int primitive, struct wall_closest t, preal radius)
+/* What the candidates are seen with. */
+struct sight {
+    const struct walls *walls;
+    const struct wall_pose *pose;
+    pvec3 x;
+    preal radius;
+};
+
+static struct wall_closest closest_of(const struct sight *sight, int primitive, pvec3 x)
 {
-    if (walls->features[6 * primitive] < 0) return false;
-    for (int s = 0; s < n_kept; s++)
-        if (walls->wall_of[kept[s]] == walls->wall_of[primitive] &&
-            wall_coincides(closest[s], t, radius))
-            return true;
-    return false;
+    struct wall_closest c = wall_closest_moved(primitive_of(sight->walls, primitive),
+        frame_of(sight->pose + sight->walls->wall_of[primitive]), x);
+    c.D = p3_scale(c.distance, c.n);
+    return c;
+}
+
+/* Whether s takes away that t is a local minimum. */
+static bool hides(
+    const struct sight *sight, int s, struct wall_closest at_s, int t, struct wall_closest at_t)
+{
+    const struct walls *walls = sight->walls;
+    if (at_t.feature == 0 || !(at_t.distance < (preal)1.5 * sight->radius)) return false;
+    if (walls->wall_of[s] == walls->wall_of[t])
+        return is_triangle(walls, t) && wall_hides(at_s, WALL_FEATURES(walls->features, s), at_t,
+                                            WALL_FEATURES(walls->features, t), sight->radius);
+    pvec3 p = p3_add(sight->x, at_t.D);
+    preal size = (preal)fmax(fmax(fabs((double)p.x), fabs((double)p.y)), fabs((double)p.z));
+    return at_s.distance < at_t.distance - WALL_TIE * sight->radius &&
+           wall_is_flush(closest_of(sight, s, p), size, sight->radius);
+}
+
+static bool is_minimum(const struct sight *sight, const int *candidate, int n,
+    const struct wall_closest *all, int t, const struct reference_contact *kept, int n_kept)
+{
+    for (int s = 0; s < n; s++)
+        if (s != t && hides(sight, candidate[s], all[s], candidate[t], all[t])) return false;
+    for (int k = 0; k < n_kept; k++)
+        if (is_triangle(sight->walls, candidate[t]) &&
+            is_triangle(sight->walls, kept[k].primitive) &&
+            all[t].distance < (preal)1.5 * sight->radius &&
+            wall_coincides(kept[k].closest, all[t], sight->radius))
+            return false;
+    return true;
+}
+
+static struct fillet_plane plane_of(struct wall_closest c)
+{
+    return fillet_plane(c.n, c.distance);
+}
+
+/* Share and valley of one of n minima. */
+static void join(const struct sight *sight, struct reference_contact *contact, int n, int t)
+{
+    struct reference_contact *own = &contact[t];
+    const struct walls *walls = sight->walls;
+    own->partner = -1;
+    own->share = 1;
+    own->valley = plane_of(own->closest);
+    if (!is_triangle(walls, own->primitive)) return;
+    if (!(own->closest.distance < (preal)1.5 * sight->radius)) return;
+    for (int s = 0; s < n; s++) {
+        struct wall_closest other = contact[s].closest;
+        if (s == t || walls->wall_of[contact[s].primitive] != walls->wall_of[own->primitive])
+            continue;
+        struct fillet_plane valley =
+            fillet_of(plane_of(own->closest), plane_of(other), sight->radius);
+        if (other.distance < own->closest.distance ||
+            (!(own->closest.distance < other.distance) && s < t))
+            own->share *= (preal)1 - fillet_hides(p3_dot(own->closest.n, other.n));
+        if (valley.distance < own->valley.distance) {
+            own->valley = valley;
+            own->partner = s;
+        }
+    }
+    if (own->share < (preal)1) {
+        own->partner = -1;
+        own->valley = plane_of(own->closest);
+    }
 }
 
 int reference_contacts(const struct walls *walls, const struct wall_pose *pose, const double x[3],
-    double radius, const int *candidate, int n_candidate, int *kept, struct wall_closest *closest)
+    double radius, const int *candidate, int n_candidate, struct reference_contact *out)
 {
-    struct wall_closest *all = fail_alloc((size_t)n_candidate * sizeof *all);
-    int n_kept = 0;
-    for (int t = 0; t < n_candidate; t++)
-        all[t] = wall_closest_moved(primitive_of(walls, candidate[t]),
-            frame_of(pose + walls->wall_of[candidate[t]]), point_of(x));
+    struct sight sight = {walls, pose, point_of(x), (preal)radius};
+    struct wall_closest *all = fail_alloc(((size_t)n_candidate + 1) * sizeof *all);
+    int n = 0;
+    for (int t = 0; t < n_candidate; t++) all[t] = closest_of(&sight, candidate[t], sight.x);
     for (int t = 0; t < n_candidate; t++) {
         if (!pose[walls->wall_of[candidate[t]]].active ||
-            is_hidden(walls, candidate, n_candidate, all, t, (preal)radius) ||
-            is_double(walls, kept, n_kept, closest, candidate[t], all[t], (preal)radius))
+            !is_minimum(&sight, candidate, n_candidate, all, t, out, n))
             continue;
-        kept[n_kept] = candidate[t];
-        closest[n_kept++] = all[t];
+        out[n].primitive = candidate[t];
+        out[n++].closest = all[t];
     }
+    for (int t = 0; t < n; t++) join(&sight, out, n, t);
     free(all);
-    return n_kept;
+    return n;
+}
+
+bool reference_acts(const struct reference_contact *contact, int n, int primitive, preal radius)
+{
+    for (int k = 0; k < n; k++)
+        if (contact[k].primitive == primitive)
+            return contact[k].share > 0 && contact[k].valley.distance < radius;
+    return false;
 }
