@@ -63,6 +63,7 @@ double limit_speed(
 /* A contact and how deep it may get. */
 struct deepest {
     double share, depth; /* [1] of the smaller radius; [m] */
+    double speed;        /* [m/s] at which */
     int a, b;            /* material; of the other element, or the wall */
     bool is_wall;
 };
@@ -85,11 +86,27 @@ static void look_how_deep(struct deepest *deepest, const struct scene *scene,
     double depth = limit_depth(scene, m, ends, speed);
     double share = depth / (p ? fmin(c->r, p->r) : c->r);
     if (share > deepest->share)
-        *deepest = (struct deepest){share, depth, c->material, p ? b : wall, !p};
+        *deepest = (struct deepest){share, depth, speed, c->material, p ? b : wall, !p};
+}
+
+/* Relative speed [m/s] of two elements: without walls nothing but collisions turns them around, and
+ * gravity pulls both alike. */
+static double pair_speed(const struct scene *scene, const struct elements_host *e, double speed)
+{
+    double spread[3];
+    for (int a = 0; a < 3; a++) {
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        for (int64_t i = 0; i < e->n; i++) {
+            low = fmin(low, e->v[3 * i + a]);
+            high = fmax(high, e->v[3 * i + a]);
+        }
+        spread[a] = e->n > 0 ? high - low : 0;
+    }
+    return scene->n_wall > 0 ? speed : fmin(speed, length(spread));
 }
 
 static void warn_how_deep(
-    const struct deepest *d, const struct scene *scene, double speed, struct scene_errors *warnings)
+    const struct deepest *d, const struct scene *scene, struct scene_errors *warnings)
 {
     if (!(d->share > DEEP)) return;
     scene_errors_add(warnings,
@@ -97,7 +114,8 @@ static void warn_how_deep(
         "their weight and at %.3g m/s, the largest relative speed that this scene allows; %s",
         d->is_wall ? "particles" : "two particles,", scene->material[d->a].name,
         d->is_wall ? "wall" : "material",
-        d->is_wall ? scene->wall[d->b].name : scene->material[d->b].name, d->depth, d->share, speed,
+        d->is_wall ? scene->wall[d->b].name : scene->material[d->b].name, d->depth, d->share,
+        d->speed,
         d->share < 1 ? "contact laws are for small overlaps"
         : d->is_wall ? "above 1 they pass the wall"
                      : "above 1 they pass each other");
@@ -132,14 +150,14 @@ void limit_warnings(const struct scene *scene, const struct walls *walls,
     int n_class;
     struct limit_class *all = limit_classes(scene, elements, &n_class);
     struct worst worst = {.contact = HUGE_VAL, .bond = HUGE_VAL};
-    double r = HUGE_VAL;
+    double r = HUGE_VAL, among = pair_speed(scene, elements, speed);
     for (int c = 0; c < n_class; c++) {
         r = fmin(r, all[c].r);
         for (int p = 0; p <= c; p++)
             if (p != c || all[c].n > 1) {
                 look(&worst, scene, &all[c], &all[p],
                     limit_material_of(scene, all[c].material, all[p].material), speed);
-                look_how_deep(&worst.deepest, scene, &all[c], &all[p], -1, speed);
+                look_how_deep(&worst.deepest, scene, &all[c], &all[p], -1, among);
             }
         for (int w = 0; w < scene->n_wall; w++) {
             look_how_deep(&worst.deepest, scene, &all[c], NULL, w, speed);
@@ -149,7 +167,7 @@ void limit_warnings(const struct scene *scene, const struct walls *walls,
     }
     free(all);
     limit_precision_warnings(scene, walls, elements, speed, dt, warnings);
-    warn_how_deep(&worst.deepest, scene, speed, warnings);
+    warn_how_deep(&worst.deepest, scene, warnings);
     if (worst.contact < CONTACT_STEPS * dt)
         scene_errors_add(warnings,
             "the shortest contact lasts %.3g s, %.1f time steps of %.3g s; with fewer than %d "

@@ -28,7 +28,7 @@ class Directions(cli.Case):
         self.put("s.yaml", SCENE.replace("WALL", wall))
         self.put("e.csv", "x,y,z,radius\n0,0.3,0.049,0.05\n0.1,0.1,0.3,0.05\n")
         run = self.call("run", "s.yaml", "-o", name, "--quiet")
-        self.assertEqual((run.code, run.err), (0, []))
+        self.assertEqual(run.code, 0, run.err)
         with open(os.path.join(self.dir, name, "run.json")) as file:
             return json.load(file)["digest"]
 
