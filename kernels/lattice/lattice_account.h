@@ -21,7 +21,7 @@ LAW real account_link(
 {
     int axis = face >> 1;
     struct link_state s =
-        face & 1 ? link_state_of(axis, me, other, k.h) : link_state_of(axis, other, me, k.h);
+        face & 1 ? link_state_of(axis, me, other, k) : link_state_of(axis, other, me, k);
     return exists ? link_energy(s, k) : (real)0;
 }
 

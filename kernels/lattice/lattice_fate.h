@@ -19,12 +19,23 @@
         (k).criterion = (int)(p)[4];                                                               \
     } while (0)
 
+/* One over the limits of the covered share of a face. */
+LAW struct break_limits lattice_limits_cut(struct break_limits k, real share)
+{
+    real per = share > 0 ? (real)1 / share : (real)0;
+    k.normal *= per;
+    k.shear *= per;
+    k.bend *= per;
+    k.twist *= per;
+    return k;
+}
+
 /* Bits of the fate of `lower` for its link along `axis`, with the very force that moves both cells;
  * p: lambda Th [Pa]. */
 LAW int lattice_fate(int axis, struct link_cell lower, struct link_cell upper,
     struct link_constants k, real p_lower, real p_upper, struct break_limits limits)
 {
-    struct link_state s = link_state_of(axis, lower, upper, k.h);
+    struct link_state s = link_state_of(axis, lower, upper, k);
     return break_of(break_load_of(s, link_force_of(s, k, p_lower, p_upper)), limits).mode
            << (3 * axis);
 }

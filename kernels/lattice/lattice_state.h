@@ -30,6 +30,7 @@ struct lattice_load {
     vec3 acceleration, v, w;
     vec3 now_v, now_w;
     real rate;
+    vec3 turn;
 };
 
 /* A row of loads, from device or host memory. */
@@ -51,6 +52,7 @@ LAW struct lattice_load lattice_load_of(__global const real *p)
     l.now_v = lattice_vec(p, LOAD_NOW);
     l.now_w = lattice_vec(p, LOAD_NOW + 3);
     l.rate = p[LOAD_RATE];
+    l.turn = lattice_vec(p, LOAD_TURN);
     return l;
 }
 /* A row of the table of links. */
@@ -65,7 +67,46 @@ LAW struct link_constants lattice_constants_of(__global const real *p)
     k.r_j = p[5];
     k.h = p[6];
     k.eta = p[7];
+    k.is_cut = 0;
+    k.offset = v3(0, 0, 0);
     return k;
+}
+/* The same of the covered part of a face; row: of the table of shares. */
+LAW struct link_constants lattice_constants_cut(
+    struct link_constants k, __global const real *row, int face)
+{
+    real share = row[SHARE_FACE + face];
+    k.kn *= share;
+    k.ks *= share;
+    k.kt *= share;
+    k.kb *= share;
+    k.r_i *= share;
+    k.r_j *= share;
+    k.is_cut = 1;
+    k.offset = v3(0, row[SHARE_OFFSET + 2 * face], row[SHARE_OFFSET + 2 * face + 1]);
+    return k;
+}
+
+/* A row of the table of cells; `share`: of the table of shares, NULL: whole. */
+LAW struct volume_constants lattice_volume_of(
+    __global const real *p, __global const real *share, int links)
+{
+    struct volume_constants c;
+    c.lambda = p[2];
+    c.per_4g = p[3];
+    c.per_2h = p[4];
+    c.volume = p[7];
+    if (WITH_SHARES) {
+        c.share = share ? share[SHARE_VOLUME] : (real)1;
+        c.least = share ? share[SHARE_LEAST] : (real)0;
+        c.missing = (real)volume_missing(links);
+        if (share) {
+            c.missing = (real)6 * c.share;
+            for (int f = 0; f < 6; f++)
+                c.missing -= links >> f & 1 ? share[SHARE_FACE + f] : (real)0;
+        }
+    }
+    return c;
 }
 
 /* What the link over face `face` (bit of the mask, a constant) does to the cell `me`; p: lambda Th
@@ -75,7 +116,7 @@ LAW struct link_share lattice_link(int face, int exists, struct link_cell me,
 {
     int axis = face >> 1, is_lower = face & 1;
     struct link_state s =
-        is_lower ? link_state_of(axis, me, other, k.h) : link_state_of(axis, other, me, k.h);
+        is_lower ? link_state_of(axis, me, other, k) : link_state_of(axis, other, me, k);
     struct link_force f =
         is_lower ? link_force_of(s, k, p_me, p_other) : link_force_of(s, k, p_other, p_me);
     return link_if(exists, is_lower ? link_on_lower(axis, s, f) : link_on_upper(axis, s, f));
@@ -87,7 +128,7 @@ LAW real lattice_stretch(int face, int exists, struct link_cell me, struct link_
 {
     int axis = face >> 1, is_lower = face & 1;
     struct link_state s =
-        is_lower ? link_state_of(axis, me, other, k.h) : link_state_of(axis, other, me, k.h);
+        is_lower ? link_state_of(axis, me, other, k) : link_state_of(axis, other, me, k);
     return volume_part(exists, is_lower ? k.r_i : k.r_j, link_stretch(s, eta));
 }
 
@@ -112,6 +153,7 @@ LAW struct link_share lattice_load_add(
     sum.torque = v3_add(sum.torque, v3_cross(lattice_turned(c, v3(1, 0, 0)), l.lever[0]));
     sum.torque = v3_add(sum.torque, v3_cross(lattice_turned(c, v3(0, 1, 0)), l.lever[1]));
     sum.torque = v3_add(sum.torque, v3_cross(lattice_turned(c, v3(0, 0, 1)), l.lever[2]));
+    if (WITH_SHARES) sum.torque = v3_add(sum.torque, lattice_turned(c, l.turn));
     return sum;
 }
 

@@ -57,6 +57,26 @@ LAW struct stress lattice_stress_of(struct lattice_through f, struct link_cell c
     return stress_parts(WITH_TURN ? stress_in_cell(r, c.q) : r, faces);
 }
 
+/* The same of a cell that the surface cuts: the force through the covered parts of the two faces of
+ * an axis, over their area. Inside and outside of the surface alike this is exact for a constant
+ * stress, and it is well conditioned in a sliver, where an average over the volume is not. share:
+ * row of the table. */
+LAW struct stress lattice_stress_cut(
+    struct lattice_through f, struct link_cell c, int links, real h, __global const real *share)
+{
+    struct stress_rows r;
+    real area[3];
+    for (int a = 0; a < 3; a++) {
+        real sum = (links >> (2 * a) & 1 ? share[SHARE_FACE + 2 * a] : (real)0) +
+                   (links >> (2 * a + 1) & 1 ? share[SHARE_FACE + 2 * a + 1] : (real)0);
+        area[a] = sum > 0 ? (real)1 / (sum * h * h) : (real)0;
+    }
+    r.x = v3_scale(area[0], v3_sub(f.x[1], f.x[0]));
+    r.y = v3_scale(area[1], v3_sub(f.y[1], f.y[0]));
+    r.z = v3_scale(area[2], v3_sub(f.z[1], f.z[0]));
+    return stress_parts(WITH_TURN ? stress_in_cell(r, c.q) : r, links);
+}
+
 /* The link of a cell that its stress breaks, as a mask; 0 where none is pulled (law_principal.h).
  * s: as lattice_stress_of gives it. */
 LAW int lattice_principal(struct lattice_through f, struct stress s, struct link_cell c, int links)

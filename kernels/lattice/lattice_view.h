@@ -24,6 +24,8 @@ struct lattice_view {
     size_t plane, begin;       /* begin: of this run */
     /* of the runs beside, - and + along the lower of the two other axes, then along the higher */
     size_t base[4];
+    const __global int *share;   /* WITH_SHARES: row of each cell in `shares`, 0: whole */
+    __global const real *shares; /* WITH_SHARES: table of SHARE_WIDTH */
     int n_kind;
     int still;               /* 1: links without their dashpots */
     struct link_constants k; /* of a run whose cells and neighbours are of one kind */
@@ -58,9 +60,16 @@ LAW size_t lattice_beside(struct lattice_view s, int face, size_t l)
                             : s.begin + l - 1;
 }
 
-/* Constants of the link over a face: of the run, or (`mixed`) of the two cells' kinds. */
+/* The shares of cell i of a run that is mixed. */
+LAW __global const real *lattice_share(struct lattice_view s, size_t i)
+{
+    return s.shares + (size_t)s.share[i] * SHARE_WIDTH;
+}
+
+/* Constants of the link of cell i over a face: of the run, or (`mixed`) of the two cells' kinds and
+ * of what is covered of the face. */
 LAW struct link_constants lattice_constants(
-    struct lattice_view s, int face, int mixed, int word, size_t j)
+    struct lattice_view s, int face, int mixed, int word, size_t i, size_t j)
 {
     struct link_constants k = s.k;
     if (WITH_KINDS && mixed) {
@@ -70,7 +79,14 @@ LAW struct link_constants lattice_constants(
             (size_t)(face & 1 ? me * s.n_kind + other : other * s.n_kind + me) * LINK_WIDTH;
         k = lattice_constants_of(row);
     }
+    if (WITH_SHARES && mixed) k = lattice_constants_cut(k, lattice_share(s, i), face);
     return k;
+}
+
+/* 1/m of cell i [1/kg]; cell: row of the table of its kind. */
+LAW real lattice_per_mass(int mixed, struct lattice_view s, size_t i, __global const real *cell)
+{
+    return WITH_SHARES && mixed ? cell[0] * lattice_share(s, i)[SHARE_PER_MASS] : cell[0];
 }
 
 LAW void lattice_view_runs(struct lattice_view *s, __global const int *base, int run, int n_run)
@@ -95,6 +111,8 @@ LAW struct lattice_view lattice_view_of(__global const preal *x, __global const 
     s.link = link;
     s.plane = plane;
     lattice_view_runs(&s, base, run, n_run);
+    s.share = 0;
+    s.shares = 0;
     s.n_kind = n_kind;
     s.still = 0;
     s.k = lattice_constants_of(row);
@@ -108,11 +126,21 @@ LAW struct lattice_view lattice_view_of(__global const preal *x, __global const 
 #else
 #define VIEW_PRESSURE
 #endif
+#if WITH_SHARES
+#define VIEW_SHARES(view)                                                                          \
+    (view).share = share;                                                                          \
+    (view).shares = shares;
+#define SHARE_ARGUMENTS __global const int *share, __global const real *shares,
+#else
+#define VIEW_SHARES(view)
+#define SHARE_ARGUMENTS
+#endif
 #define RUN_CELLS(run, what)                                                                       \
     struct lattice_view s = lattice_view_of(x + x_in, v + v_in, word, link, base, run, n_run,      \
         n_kind, (what) & (RUN_MIXED - 1), (size_t)plane);                                          \
     VIEW_PRESSURE                                                                                  \
-    if (WITH_KINDS && (what) >= RUN_MIXED) {                                                       \
+    VIEW_SHARES(s)                                                                                 \
+    if ((WITH_KINDS || WITH_SHARES) && (what) >= RUN_MIXED) {                                      \
         RUN(1)                                                                                     \
     } else {                                                                                       \
         RUN(0)                                                                                     \
@@ -146,7 +174,7 @@ LAW struct link_share lattice_face(
         p_other = s.p[j];
     }
     return lattice_link(face, LATTICE_LINKS(word) >> face & 1, me, other,
-        lattice_constants(s, face, mixed, word, j), p_me, p_other);
+        lattice_constants(s, face, mixed, word, i, j), p_me, p_other);
 }
 
 /* The six links in the order of the mask. */
@@ -169,8 +197,8 @@ LAW real lattice_part(
     size_t j = lattice_beside(s, face, l);
     struct link_cell other = lattice_cell(s, j);
     if (WITH_LINK_DAMPING && !s.still) other = lattice_moving(s, j, other);
-    return lattice_stretch(
-        face, word >> face & 1, me, other, lattice_constants(s, face, mixed, word, j), eta);
+    return lattice_stretch(face, word >> face & 1, me, other,
+        lattice_constants(s, face, mixed, word, s.begin + l, j), eta);
 }
 
 #endif

@@ -6,6 +6,9 @@
 #ifndef DEMOCLES_LATTICE_WORDS_H
 #define DEMOCLES_LATTICE_WORDS_H
 
+/* Bits of a mask of links. */
+#define LINK_BIT(axis, upper) (1 << (2 * (axis) + (upper)))
+
 #define WORD_FIX 6
 #define WORD_OWNED 12
 #define WORD_KIND 16
@@ -28,6 +31,15 @@
 /* 1/m [1/kg], 1/J [1/(kg m2)], lambda [Pa], 1/(4 G) [1/Pa], 1/(2 h) [1/m], eta [s], alpha [1/s],
  * h^3 [m3]; row: kind */
 #define CELL_WIDTH 8
+/* WITH_SHARES, of a cell that the surface of its body cuts: covered shares of its faces, in the
+ * order of the mask; of each the place of the covered part's middle along the two axes after the
+ * face's [m]; share of the volume, one over that of the mass, least D (law_volume.h) */
+#define SHARE_FACE 0
+#define SHARE_OFFSET 6
+#define SHARE_VOLUME 18
+#define SHARE_PER_MASS 19
+#define SHARE_LEAST 20
+#define SHARE_WIDTH 24
 /* one over the limits of normal and shear force, bending and twisting moment, criterion
  * (law_break.h); row: as links */
 #define BREAK_WIDTH 5

@@ -36,6 +36,11 @@
  * so the power -f_d.gd - mom_d.wr is never positive, and p takes n.g + eta d(n.g)/dt
  * (link_stretch). The small form is k (g + eta gd) with linear gd.
  *
+ * WITH_SHARES: the link joins the covered parts of two faces. Its constants come in the covered
+ * share, and it acts at the middle of that part, `offset` d beside the middle of the face:
+ *     g + R_j d - R_i d in place of g,   torque on i: + (R_i d) x f,   on j: - (R_j d) x f
+ * which is the gradient of the same U. A field of constant strain has the same gap as without d.
+ *
  * WITH_VOLUME: P exists. WITH_SHEAR_APART: kn != ks, WITH_TWIST_APART: kt != kb, somewhere in the
  * body; the small form does not care, it is as cheap either way. A rigid wall is a cell j without
  * mass that the wall carries, centre h/2 behind the face, with the constants of a half-link. */
@@ -50,6 +55,8 @@ struct link_constants {
     real r_i, r_j; /* share of the stretch in each half, times 2 [1] */
     real h;        /* edge of a cell [m] */
     real eta;      /* Kelvin-Voigt time [s] */
+    int is_cut;    /* WITH_SHARES: whether the offset counts */
+    vec3 offset;   /* WITH_SHARES: of the covered part's middle from the face's, axis first [m] */
 };
 
 /* What a link asks of a cell; members that the flags leave out need no value. */
@@ -70,6 +77,8 @@ struct link_state {
     vec3 n;        /* WITH_TURN */
     vec3 gap_rate; /* gd [m/s] */
     vec3 spin;     /* wr [rad/s] */
+    int is_cut;    /* WITH_SHARES */
+    vec3 o_i, o_j; /* WITH_SHARES: R d of both cells [m] */
 };
 
 /* What both cells get, axis first: a x lever + couple +- moment. */
@@ -110,17 +119,42 @@ LAW void link_rates(vec3 v_i, vec3 v_j, vec3 w_i, vec3 w_j, real arm, struct lin
     }
 }
 
-/* Axis 0, 1, 2, a constant; h [m]. */
-LAW struct link_state link_state_of(int axis, struct link_cell i, struct link_cell j, real h)
+/* (R - I) d */
+LAW pvec3 link_swung(struct quat q, pvec3 d)
+{
+    pvec3 t = p3_scale((preal)2, p3_cross(q.v, d));
+    return p3_fma(q.w, t, p3_cross(q.v, t));
+}
+
+/* What the offset d adds to the gap. */
+LAW void link_beside(
+    int axis, struct link_cell i, struct link_cell j, pvec3 d, struct link_state *s)
+{
+    s->o_i = s->o_j = v3_of_p3(d);
+    if (WITH_TURN) {
+        pvec3 o_i = link_swung(quat_cycle(i.q, axis), d),
+              o_j = link_swung(quat_cycle(j.q, axis), d);
+        s->gap = v3_add(s->gap, v3_of_p3(p3_sub(o_j, o_i)));
+        s->o_i = v3_of_p3(p3_add(d, o_i));
+        s->o_j = v3_of_p3(p3_add(d, o_j));
+    } else {
+        s->gap = v3_add(s->gap, v3_cross(s->turn, s->o_i));
+    }
+}
+
+/* Axis 0, 1, 2, a constant. */
+LAW struct link_state link_state_of(
+    int axis, struct link_cell i, struct link_cell j, struct link_constants k)
 {
     struct link_state s;
-    preal arm = (preal)0.5 * (preal)h;
+    preal arm = (preal)0.5 * (preal)k.h;
     pvec3 du = p3_cycle(p3_sub(j.u, i.u), axis);
     vec3 zero = v3(0, 0, 0);
 
     s.scalar = 1;
     s.a_i = s.a_j = s.n = v3(1, 0, 0);
-    s.gap_rate = s.spin = zero;
+    s.gap_rate = s.spin = s.o_i = s.o_j = zero;
+    s.is_cut = WITH_SHARES ? k.is_cut : 0;
     if (WITH_TURN) {
         struct quat q_i = quat_cycle(i.q, axis), q_j = quat_cycle(j.q, axis);
         pvec3 d_i = quat_first(q_i), d_j = quat_first(q_j), sum = p3_add(d_i, d_j);
@@ -135,9 +169,13 @@ LAW struct link_state link_state_of(int axis, struct link_cell i, struct link_ce
             (real)p_fma(arm, t_i.y + t_j.y, du.z));
         s.turn = v3_of_p3(p3_sub(t_j, t_i));
     }
-    if (WITH_LINK_DAMPING)
-        link_rates(v3_cycle(i.v, axis), v3_cycle(j.v, axis), v3_cycle(i.w, axis),
-            v3_cycle(j.w, axis), (real)arm, &s);
+    if (WITH_SHARES && k.is_cut) link_beside(axis, i, j, p3_of_v3(k.offset), &s);
+    if (WITH_LINK_DAMPING) {
+        vec3 w_i = v3_cycle(i.w, axis), w_j = v3_cycle(j.w, axis);
+        link_rates(v3_cycle(i.v, axis), v3_cycle(j.v, axis), w_i, w_j, (real)arm, &s);
+        if (WITH_SHARES && k.is_cut)
+            s.gap_rate = v3_add(s.gap_rate, v3_sub(v3_cross(w_j, s.o_j), v3_cross(w_i, s.o_i)));
+    }
     return s;
 }
 
@@ -226,14 +264,18 @@ LAW struct link_share link_on_lower(int axis, struct link_state s, struct link_f
 {
     struct link_share r;
     r.force = v3_uncycle(f.force, axis);
-    r.torque = v3_uncycle(link_torque(f, s.a_i, 1), axis);
+    vec3 torque = link_torque(f, s.a_i, 1);
+    if (WITH_SHARES && s.is_cut) torque = v3_add(torque, v3_cross(s.o_i, f.force));
+    r.torque = v3_uncycle(torque, axis);
     return r;
 }
 LAW struct link_share link_on_upper(int axis, struct link_state s, struct link_force f)
 {
     struct link_share r;
     r.force = v3_uncycle(v3_neg(f.force), axis);
-    r.torque = v3_uncycle(link_torque(f, s.a_j, -1), axis);
+    vec3 torque = link_torque(f, s.a_j, -1);
+    if (WITH_SHARES && s.is_cut) torque = v3_sub(torque, v3_cross(s.o_j, f.force));
+    r.torque = v3_uncycle(torque, axis);
     return r;
 }
 

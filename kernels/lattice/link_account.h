@@ -56,12 +56,12 @@ LAW void lattice_ledger_keep(
 
 /* word: 0 if no cell of the run has loads or held DOF. */
 LAW void link_account_kicks(struct lattice_effort e, struct link_cell c, vec3 a, vec3 b, int word,
-    __global const real *cell, __global const real *kick, int count, __global double *ledger,
-    size_t plane, size_t i)
+    __global const real *cell, real per_mass, __global const real *kick, int count,
+    __global double *ledger, size_t plane, size_t i)
 {
     struct lattice_kick end, begin;
     struct lattice_ledger sum = lattice_ledger_of(ledger, plane, i);
-    double alpha = (double)cell[6], mass = 1.0 / (double)cell[0], inertia = 1.0 / (double)cell[1];
+    double alpha = (double)cell[6], mass = 1.0 / (double)per_mass, inertia = 1.0 / (double)cell[1];
     end = lattice_kick_of(kick);
     begin = lattice_kick_of(kick + KICK_PART);
     lattice_ledger_keep(ledger, plane, i,
@@ -71,11 +71,12 @@ LAW void link_account_kicks(struct lattice_effort e, struct link_cell c, vec3 a,
 /* c: as the stage finds it. last: planes of the accelerations of the stage before, Nystrom's
  * alone. */
 LAW void link_account_stage(struct lattice_effort e, struct link_cell c, vec3 a, vec3 b, int word,
-    __global const real *cell, struct lattice_stage stage, struct lattice_speed speed,
-    __global real *last, __global double *ledger, size_t plane, size_t i)
+    __global const real *cell, real per_mass, struct lattice_stage stage,
+    struct lattice_speed speed, __global real *last, __global double *ledger, size_t plane,
+    size_t i)
 {
     struct lattice_ledger sum = lattice_ledger_of(ledger, plane, i);
-    double alpha = (double)cell[6], mass = 1.0 / (double)cell[0], inertia = 1.0 / (double)cell[1];
+    double alpha = (double)cell[6], mass = 1.0 / (double)per_mass, inertia = 1.0 / (double)cell[1];
     if (stage.is_nystrom) {
         vec3 before_a = v3_load(last, plane, 0, i), before_b = v3_load(last, plane, 3, i);
         c = lattice_speed_of(c, a, b, before_a, before_b, speed, stage.is_first);

@@ -21,13 +21,15 @@ LAW int lattice_judge(int axis, int mixed, struct lattice_view s, size_t l, int 
                     BREAK_WIDTH;
     real p_me = 0, p_other = 0;
     LATTICE_LIMITS(limits, row);
+    if (WITH_SHARES && mixed)
+        limits = lattice_limits_cut(limits, lattice_share(s, i)[SHARE_FACE + 2 * axis + 1]);
     if (WITH_LINK_DAMPING) other = lattice_moving(s, j, other);
     if (WITH_VOLUME) {
         p_me = s.p[i];
         p_other = s.p[j];
     }
-    int fate = lattice_fate(
-        axis, me, other, lattice_constants(s, 2 * axis + 1, mixed, word, j), p_me, p_other, limits);
+    int fate = lattice_fate(axis, me, other, lattice_constants(s, 2 * axis + 1, mixed, word, i, j),
+        p_me, p_other, limits);
     return word >> (2 * axis + 1) & 1 ? fate : 0;
 }
 
@@ -49,8 +51,9 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void link_brea
     __global const int *info, __global const int *base, __global const int *word, int n_run,
     int n_kind, long plane, __global const preal *x, long x_in, __global const real *v, long v_in,
     __global const real *link, __global const real *limit,
+    SHARE_ARGUMENTS
 #if WITH_VOLUME
-    __global const real *p,
+        __global const real *p,
 #endif
     __global int *restrict fate)
 {

@@ -10,7 +10,7 @@ LAW real account_face(int face, struct lattice_view s, size_t l, int word, struc
 {
     size_t j = lattice_beside(s, face, l);
     return account_link(face, LATTICE_LINKS(word) >> face & 1, me, lattice_cell(s, j),
-        lattice_constants(s, face, 1, word, j));
+        lattice_constants(s, face, 1, word, s.begin + l, j));
 }
 
 /* Links and volume of a cell [J]. */
@@ -29,10 +29,7 @@ LAW void account_elastic(struct lattice_view s, size_t l, int word, struct link_
         sum += lattice_part(3, 1, s, l, word, c, 0) + lattice_part(4, 1, s, l, word, c, 0) +
                lattice_part(5, 1, s, l, word, c, 0);
     }
-    k.lambda = cell[2];
-    k.per_4g = cell[3];
-    k.per_2h = cell[4];
-    k.volume = cell[7];
+    k = lattice_volume_of(cell, WITH_SHARES ? lattice_share(s, s.begin + l) : 0, word & 63);
     *volume = account_volume(sum, load, word & 63, k);
     *faces = WITH_ENERGY && WITH_LOADS ? account_faces(sum, load, word & 63, k) : (real)0;
 }

@@ -13,8 +13,10 @@ __kernel __attribute__((reqd_work_group_size(SUMS_GROUP, 1, 1))) void link_energ
     __global const int *list, __global const int *info, __global const int *base,
     __global const int *word, int n_run, int n_kind, long plane, __global const preal *x, long x_in,
     __global const real *v, long v_in, __global const real *link, __global const real *cell,
+    SHARE_ARGUMENTS
 #if WITH_LOADS
-    __global const int *row, __global const real *rows, int at_rows,
+        __global const int *row,
+    __global const real *rows, int at_rows,
 #endif
 #if WITH_ENERGY
     __global const double *ledger,
@@ -36,8 +38,10 @@ __kernel __attribute__((reqd_work_group_size(SUMS_GROUP, 1, 1))) void link_energ
         if (!(word_i >> WORD_OWNED & 1)) continue;
         struct lattice_view s = lattice_view_of(x + x_in, v + v_in, word, link, base, run, n_run,
             n_kind, info[run] & (RUN_MIXED - 1), (size_t)plane);
+        VIEW_SHARES(s)
         struct link_cell c = lattice_moving(s, i, lattice_cell(s, i));
         __global const real *constants = cell + LATTICE_KIND(word_i) * CELL_WIDTH;
+        real per_mass = lattice_per_mass(1, s, i, constants);
         __global const double *from = place + (size_t)run * 4;
         double at[3] = {from[0], from[1], from[2]};
         at[RUN_AXIS] += (double)l * from[3];
@@ -48,13 +52,12 @@ __kernel __attribute__((reqd_work_group_size(SUMS_GROUP, 1, 1))) void link_energ
 #endif
         real links, volume, faces;
         account_elastic(s, l, word_i, c, load, constants, &links, &volume, &faces);
-        account_cell(
-            c, links, volume, at, (double)constants[0], (double)constants[1], gravity, term);
+        account_cell(c, links, volume, at, (double)per_mass, (double)constants[1], gravity, term);
         term[ACCOUNT_WORK] = term[ACCOUNT_LINKS] = term[ACCOUNT_MASS] = 0.0;
 #if WITH_ENERGY
         term[ACCOUNT_WORK] =
             ledger[i] + (double)faces +
-            account_held(c, word_i, 1.0 / (double)constants[0], 1.0 / (double)constants[1]);
+            account_held(c, word_i, 1.0 / (double)per_mass, 1.0 / (double)constants[1]);
         term[ACCOUNT_LINKS] = ledger[s.plane + i];
         term[ACCOUNT_MASS] = ledger[2 * s.plane + i];
 #endif

@@ -45,8 +45,9 @@ LAW struct lattice_pull lattice_pull_of(int mixed, struct lattice_view s, size_t
         r.now_v = load.now_v;
         r.now_w = load.now_w;
     }
-    r.a = WITH_GRAVITY || (WITH_LOADS && mixed) ? v3_fma(cell[0], sum.force, add)
-                                                : v3_scale(cell[0], sum.force);
+    real per_mass = lattice_per_mass(mixed, s, s.begin + l, cell);
+    r.a = WITH_GRAVITY || (WITH_LOADS && mixed) ? v3_fma(per_mass, sum.force, add)
+                                                : v3_scale(per_mass, sum.force);
     r.b = v3_scale(cell[1], sum.torque);
     return r;
 }
@@ -181,10 +182,12 @@ LAW void link_account(int mixed, struct link_pass p, struct link_cell c, struct 
 {
     __global const real *cell = p.cell + kind * CELL_WIDTH;
 #if WITH_RK
-    link_account_stage(pull.effort, c, pull.a, pull.b, mixed ? word : 0, cell, p.stage, p.speed,
-        p.sum_v + LATTICE_V * p.s.plane, p.ledger, p.s.plane, i);
+    real per_mass = lattice_per_mass(mixed, p.s, i, cell);
+    link_account_stage(pull.effort, c, pull.a, pull.b, mixed ? word : 0, cell, per_mass, p.stage,
+        p.speed, p.sum_v + LATTICE_V * p.s.plane, p.ledger, p.s.plane, i);
 #else
-    link_account_kicks(pull.effort, c, pull.a, pull.b, mixed ? word : 0, cell,
+    real per_mass = lattice_per_mass(mixed, p.s, i, cell);
+    link_account_kicks(pull.effort, c, pull.a, pull.b, mixed ? word : 0, cell, per_mass,
         p.kick + kind * KICK_WIDTH, p.count, p.ledger, p.s.plane, i);
 #endif
 }
@@ -259,8 +262,9 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void link_forc
     __global const int *word, int n_run, int n_kind, long plane, __global preal *restrict x,
     long x_in, long x_out, __global real *restrict v, long v_in, long v_out,
     __global const real *link, __global const real *cell,
+    SHARE_ARGUMENTS
 #if WITH_VOLUME
-    __global const real *p,
+        __global const real *p,
 #endif
 #if WITH_GRAVITY
     real gravity_x, real gravity_y, real gravity_z,
@@ -281,7 +285,8 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void link_forc
     preal c_sum_v, preal c_sum_a, preal c_next_v, preal c_next_a, preal c_next_turn,
     preal c_sum_turn, real c_sum_k, real c_next_k, int is_first, int is_last
 #else
-    __global const real *kick_table, int at_kick, preal drift
+        __global const real *kick_table,
+    int at_kick, preal drift
 #endif
 )
 {
@@ -296,6 +301,7 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void link_forc
     pass.gravity = v3(0, 0, 0);
     pass.row = 0;
     pass.rows = 0;
+    VIEW_SHARES(pass.s)
 #if WITH_VOLUME
     pass.s.p = p;
 #endif
@@ -328,7 +334,8 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void link_forc
     pass.count = count;
 #endif
 #endif
-    if ((WITH_KINDS || WITH_FIX || WITH_LOADS) && what >= RUN_MIXED) link_run(1, pass, 0);
+    if ((WITH_KINDS || WITH_FIX || WITH_LOADS || WITH_SHARES) && what >= RUN_MIXED)
+        link_run(1, pass, 0);
     else link_run(0, pass, what & (RUN_MIXED - 1));
 }
 

@@ -36,7 +36,7 @@ LAW struct principal_cell principal_cell_of(int mixed, struct lattice_view s, si
 {
     struct principal_cell c;
     c.f = lattice_through_of(mixed, s, l, word, me);
-    c.s = lattice_stress_of(c.f, me, load, LATTICE_LINKS(word), s.k.h, 0);
+    c.s = lattice_stress_at(mixed, s, l, word, c.f, me, load, 0);
     return c;
 }
 
@@ -68,8 +68,9 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void link_judg
     __global const int *list, __global const int *info, __global const int *base,
     __global const int *word, int n_run, int n_kind, long plane, __global const preal *x, long x_in,
     __global const real *v, long v_in, __global const real *link, __global const real *inverse,
+    SHARE_ARGUMENTS
 #if WITH_VOLUME
-    __global const real *p,
+        __global const real *p,
 #endif
 #if WITH_LOADS
     __global const int *row, __global const real *rows, int at_rows,

@@ -16,8 +16,10 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void link_rele
     __global const int *list, __global const int *info, __global const int *base,
     __global const int *word, int n_run, int n_kind, long plane, __global const preal *x, long x_in,
     __global const real *v, long v_in, __global const real *link, __global const real *cell,
+    SHARE_ARGUMENTS
 #if WITH_LOADS
-    __global const int *row, __global const real *rows, int at_rows,
+        __global const int *row,
+    __global const real *rows, int at_rows,
 #endif
     __global const int *fate, double before, double after, __global int *restrict fresh,
     __global double *restrict released)
@@ -26,6 +28,7 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void link_rele
     int run = list[get_group_id(0)];
     struct lattice_view s = lattice_view_of(x + x_in, v + v_in, word, link, base, run, n_run,
         n_kind, info[run] & (RUN_MIXED - 1), (size_t)plane);
+    VIEW_SHARES(s)
     FOR_BATCH (l, BATCH) {
         size_t i = s.begin + l;
         int word_i = word[i], late = fresh[i];

@@ -23,8 +23,8 @@ LAW void lattice_stress_keep(
         int word_i = word[i];                                                                      \
         struct link_cell c = lattice_moving(s, i, lattice_cell(s, i));                             \
         struct lattice_load load = LOAD_OF(i);                                                     \
-        struct stress r = lattice_stress_of(lattice_through_of(mixed, s, l, word_i, c), c, load,   \
-            LATTICE_LINKS(word_i), s.k.h, extrapolate);                                            \
+        struct stress r = lattice_stress_at(mixed, s, l, word_i,                                   \
+            lattice_through_of(mixed, s, l, word_i, c), c, load, extrapolate);                     \
         lattice_stress_keep(stress, s.plane, i, lattice_stress_world(r, c), stress_von_mises(r));  \
     }
 
@@ -33,8 +33,9 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void link_stre
     __global const int *list, __global const int *info, __global const int *base,
     __global const int *word, int n_run, int n_kind, long plane, __global const preal *x, long x_in,
     __global const real *v, long v_in, __global const real *link,
+    SHARE_ARGUMENTS
 #if WITH_VOLUME
-    __global const real *p,
+        __global const real *p,
 #endif
 #if WITH_LOADS
     __global const int *row, __global const real *rows, int at_rows,

@@ -18,6 +18,15 @@ LAW struct lattice_through lattice_through_of(
     return f;
 }
 
+/* Stress of a cell from the forces through its links. */
+LAW struct stress lattice_stress_at(int mixed, struct lattice_view s, size_t l, int word,
+    struct lattice_through f, struct link_cell me, struct lattice_load load, int extrapolate)
+{
+    if (WITH_SHARES && mixed && s.share[s.begin + l])
+        return lattice_stress_cut(f, me, LATTICE_LINKS(word), s.k.h, lattice_share(s, s.begin + l));
+    return lattice_stress_of(f, me, load, LATTICE_LINKS(word), s.k.h, extrapolate);
+}
+
 /* Loads of cell i; names of the kernel's arguments. */
 #if WITH_LOADS
 LAW struct lattice_load lattice_load_at(__global const real *at)

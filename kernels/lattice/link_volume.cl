@@ -19,10 +19,8 @@ LAW real lattice_pressure(int still, int mixed, struct lattice_view s, size_t l,
     sum += lattice_part(3, mixed, s, l, word, me, eta);
     sum += lattice_part(4, mixed, s, l, word, me, eta);
     sum += lattice_part(5, mixed, s, l, word, me, eta);
-    c.lambda = cell[2];
-    c.per_4g = cell[3];
-    c.per_2h = cell[4];
-    c.volume = cell[7];
+    c = lattice_volume_of(
+        cell, WITH_SHARES && mixed ? lattice_share(s, s.begin + l) : 0, word & 63);
     return c.lambda * volume_strain(sum, traction, word & 63, c);
 }
 
@@ -50,8 +48,10 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void link_volu
     __global const int *list, __global const int *info, __global const int *base,
     __global const int *word, int n_run, int n_kind, long plane, __global const preal *x, long x_in,
     __global const real *v, long v_in, __global const real *link, __global const real *cell,
+    SHARE_ARGUMENTS
 #if WITH_LOADS
-    __global const int *row, __global const real *rows, int at_rows,
+        __global const int *row,
+    __global const real *rows, int at_rows,
 #endif
     __global real *restrict p)
 {
@@ -59,7 +59,8 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void link_volu
     int run = list[first + get_group_id(0)], what = info[run], kind = what & (RUN_MIXED - 1);
     struct lattice_view s = lattice_view_of(
         x + x_in, v + v_in, word, link, base, run, n_run, n_kind, kind, (size_t)plane);
-    if ((WITH_KINDS || WITH_LOADS) && what >= RUN_MIXED) {
+    VIEW_SHARES(s)
+    if ((WITH_KINDS || WITH_LOADS || WITH_SHARES) && what >= RUN_MIXED) {
         VOLUMES(1, cell + LATTICE_KIND(word[i]) * CELL_WIDTH, (real)TRACTION(i))
     } else {
         VOLUMES(0, cell + kind * CELL_WIDTH, (real)0)

@@ -13,11 +13,12 @@ enum {
     /* 6: what LOAD_TRACTION sums, t.n of each face in the order of the mask of links [Pa]; only
      * what is measured reads it */
     LOAD_NORMAL = 19,
+    LOAD_TURN = 25, /* 3: torque that turns with the cell, of pressures on cut cells [N m] */
     /* 6: v and w of DOF that are prescribed (their CELL_FIX bit is set) [m/s] [rad/s] */
-    LOAD_VELOCITY = 25,
-    LOAD_NOW = 31,  /* 6: the same at the time of the forces */
-    LOAD_RATE = 37, /* 1: change of LOAD_TRACTION, for the balance of energy [Pa/s] */
-    LOAD_WIDTH = 38
+    LOAD_VELOCITY = 28,
+    LOAD_NOW = 34,  /* 6: the same at the time of the forces */
+    LOAD_RATE = 40, /* 1: change of LOAD_TRACTION, for the balance of energy [Pa/s] */
+    LOAD_WIDTH = 41
 };
 
 #endif

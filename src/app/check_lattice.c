@@ -34,6 +34,29 @@ static void print_material(const struct material *m)
     printf("\n");
 }
 
+/* In whole cells. */
+static double mass_of_body(const struct lattice_cells *cells, int body)
+{
+    double all = 0;
+    for (int64_t i = 0; i < cells->n; i++)
+        all += cells->body[i] == body ? lattice_cells_share(cells, i)->mass : 0;
+    return all;
+}
+
+static void print_shares(const struct lattice_cells *cells)
+{
+    double least = 1;
+    int64_t n = 0;
+    for (int64_t i = 0; i < cells->n; i++) {
+        double volume = lattice_cells_share(cells, i)->volume;
+        n += volume < 1;
+        least = fmin(least, volume);
+    }
+    if (cells->share)
+        printf("    %lld cells that curved surfaces cut, the smallest with %.3g of its volume\n",
+            (long long)n, least);
+}
+
 /* Of round bodies and of meshes: how much of the shape the cells hold, and how fine they are. */
 static void print_fit(const struct scene *scene, const struct lattice_cells *cells, int b)
 {
@@ -52,13 +75,14 @@ static void print_cells(const struct scene *scene, const struct lattice_cells *c
     for (int b = 0; b < scene->n_body; b++) {
         const struct body *body = &scene->body[b];
         const struct material *m = &scene->material[body->material];
-        double mass = link_constants_mass(lattice_frequency_material(m), body->cell) *
-                      (double)cells->n_of_body[b];
+        double mass =
+            link_constants_mass(lattice_frequency_material(m), body->cell) * mass_of_body(cells, b);
         printf("    %s: %lld cells of %g m, %s, %.4g kg, %lld links within and upwards from it\n",
             body->name, (long long)cells->n_of_body[b], body->cell, m->name, mass,
             (long long)count_links(cells, b));
         print_fit(scene, cells, b);
     }
+    print_shares(cells);
     if (cells->n_grid > 1)
         printf("    %d grids: bodies on different grids are not joined\n", cells->n_grid);
     printf("\nmaterials\n");

@@ -21,11 +21,12 @@ struct launch *lattice_launch(
     struct launch *k = launch_create(program, kernel);
     int64_t plane = l->layout->plane;
     launch_set_batch(k, (size_t)l->layout->run);
-    launch_bind_all_if(k,
-        (const struct launch_binding[]){{"info", &l->info}, {"base", &l->base}, {"word", &l->word},
-            {"x", &l->x}, {"v", &l->v}, {"link", &l->link}, {"cell", &l->cell}, {"p", &l->pressure},
-            {"row", &l->row}, {"rows", &l->rows.buffer}, {"sum_x", &l->sum_x}, {"sum_v", &l->sum_v},
-            {"kick_table", &l->kick}, {"ledger", &l->ledger}, {0}});
+    launch_bind_all_if(
+        k, (const struct launch_binding[]){{"info", &l->info}, {"base", &l->base},
+               {"word", &l->word}, {"x", &l->x}, {"v", &l->v}, {"link", &l->link},
+               {"cell", &l->cell}, {"p", &l->pressure}, {"row", &l->row}, {"rows", &l->rows.buffer},
+               {"sum_x", &l->sum_x}, {"sum_v", &l->sum_v}, {"kick_table", &l->kick},
+               {"ledger", &l->ledger}, {"share", &l->share}, {"shares", &l->shares}, {0}});
     if (list) launch_bind_buffer(k, "list", list);
     launch_set_if(k, "plane", &plane, sizeof plane);
     launch_set_int_if(k, "n_run", l->layout->n_run);

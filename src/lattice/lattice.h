@@ -36,7 +36,7 @@ struct lattice {
         /* features.energy: [LATTICE_LEDGER][plane] double, of the observed step and, but for the
          * kick that began, of what goes on */
         ledger;
-    struct buffer word, info, base, force_list, volume_list, row, link, cell, kick;
+    struct buffer word, info, base, force_list, volume_list, row, link, cell, kick, share, shares;
     int x_set, v_set;           /* where the state is that goes on */
     int x_observed, v_observed; /* where that of the observed step is */
     int64_t step;

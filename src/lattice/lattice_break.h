@@ -31,7 +31,7 @@ void lattice_break_bind(const struct lattice_break *b, struct launch *launch);
 const char *lattice_break_name(int mode);
 void lattice_break_count(const struct lattice_break *b, int64_t count[LATTICE_BREAK_MODES]);
 /* Of this rank's cells in the order of layout->gid, [n_owned] each; NULL is left out. links: those
- * left, LINK_BIT of kernels/lattice/law_volume.h; fate: how those at its upper faces broke, and
+ * left, LINK_BIT of kernels/lattice/lattice_words.h; fate: how those at its upper faces broke, and
  * which of its links are due (kernels/lattice/lattice_words.h). */
 void lattice_break_read(const struct lattice_break *b, int32_t *links, int32_t *fate);
 /* The other way, before the first step. */

@@ -41,6 +41,12 @@ void lattice_cells_upper(const struct lattice_cells *cells, int axis, int32_t *u
     }
 }
 
+const struct lattice_share *lattice_cells_share(const struct lattice_cells *cells, int64_t i)
+{
+    static const struct lattice_share whole = {.face = {1, 1, 1, 1, 1, 1}, .volume = 1, .mass = 1};
+    return cells->share ? &cells->share[cells->share_of[i]] : &whole;
+}
+
 void lattice_cells_centre(const struct lattice_cells *cells, int64_t i, double x[3])
 {
     const struct lattice_grid *grid = &cells->grid[cells->kind[cells->kind_of[i]].grid];

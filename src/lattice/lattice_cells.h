@@ -5,19 +5,22 @@
  * box. Bodies whose grids agree (same edge, offset a whole number of cells to 1e-9 of it) share
  * one, and there neighbouring cells are linked, of whichever body they are. A cell is there if its
  * centre is inside the shape, or on it to 1e-9 of the edge, and not so in `minus`; of two bodies
- * the later one has it. A link is there unless its middle is in a crack of one of its two bodies.
+ * the later one has it. Where a surface is curved, a cell is there too if the bodies of its grid
+ * cover some of it, with that share of its volume, faces and links (lattice_cover.c,
+ * lattice_shares.c). A link is there unless its middle is in a crack of one of its two bodies.
  * Centre of a cell: origin + (at + 1/2) h. */
 #ifndef DEMOCLES_LATTICE_CELLS_H
 #define DEMOCLES_LATTICE_CELLS_H
 
 #include "kernels/lattice/loads.h"
+#include "laws/lattice_limit.h"
 #include "scene/scene.h"
 
 #include <stdint.h>
 
 struct lattice_loads;
 
-/* Bits of a cell: six links as LINK_BIT of kernels/lattice/law_volume.h, then fixed DOF x, y, z,
+/* Bits of a cell: six links as LINK_BIT of kernels/lattice/lattice_words.h, then fixed DOF x, y, z,
  * rx, ry, rz. */
 enum { CELL_LINKS = 63, CELL_FIXED = 63 << 6 };
 #define CELL_LINK(face) (1 << (face))
@@ -48,12 +51,15 @@ struct lattice_cells {
     struct lattice_grid *grid;
     int n_grid;
     struct lattice_kind *kind;
-    int n_kind;       /* at most 255 */
-    int32_t (*at)[3]; /* [n] place on its grid, from 0 */
-    uint8_t *kind_of; /* [n] */
-    int16_t *body;    /* [n] index into scene.body */
-    uint16_t *bits;   /* [n] links and fixed DOF */
-    int32_t *row;     /* [n] row of loads; 0: no load */
+    int n_kind;                  /* at most 255 */
+    int32_t (*at)[3];            /* [n] place on its grid, from 0 */
+    uint8_t *kind_of;            /* [n] */
+    int16_t *body;               /* [n] index into scene.body */
+    uint16_t *bits;              /* [n] links and fixed DOF */
+    int32_t *row;                /* [n] row of loads; 0: no load */
+    int32_t *share_of;           /* [n] row of `share`, 0: a whole cell; NULL: all are */
+    struct lattice_share *share; /* [n_share]; NULL together with share_of */
+    int n_share;
     /* [n] velocity at time 0 [m/s]: 0 of a fixed DOF, as prescribed of a prescribed one; NULL: all
      * zero */
     double (*v)[3];
@@ -74,6 +80,8 @@ void lattice_cells_free(struct lattice_cells *cells);
 void lattice_fit_warnings(
     const struct scene *scene, const struct lattice_cells *cells, struct scene_errors *warnings);
 
+/* Shares of cell i; never NULL. */
+const struct lattice_share *lattice_cells_share(const struct lattice_cells *cells, int64_t i);
 /* Centre of cell i [m]. */
 void lattice_cells_centre(const struct lattice_cells *cells, int64_t i, double x[3]);
 /* For every cell the one beyond its upper face along the axis, linked or not, or -1. upper [n]. */

@@ -14,10 +14,12 @@ static int by_key(const void *a, const void *b)
 {
     const struct lattice_cell *p = a, *q = b;
     if (p->key != q->key) return p->key < q->key ? -1 : 1;
+    if (p->has_centre != q->has_centre) return p->has_centre ? 1 : -1;
     return p->body < q->body ? -1 : p->body > q->body;
 }
 
-/* Cells of one grid, sorted, each place once: the later body has it. */
+/* Cells of one grid, sorted, each place once: the later body has it, of those that have its centre
+ * if there are any. */
 static void merge(struct lattice_list *list)
 {
     bool sorted = true;
@@ -51,6 +53,7 @@ static void append(struct lattice_cells *cells, const struct scene *scene, int g
     cells->at = fail_realloc(cells->at, n * sizeof *cells->at);
     cells->kind_of = fail_realloc(cells->kind_of, n * sizeof *cells->kind_of);
     cells->body = fail_realloc(cells->body, n * sizeof *cells->body);
+    cells->share_of = fail_realloc(cells->share_of, n * sizeof *cells->share_of);
     /* of each body, 0: not yet known */
     int *kind = fail_alloc((size_t)scene->n_body * sizeof *kind);
     for (size_t k = 0; k < list->n; k++, cells->n++) {
@@ -61,6 +64,7 @@ static void append(struct lattice_cells *cells, const struct scene *scene, int g
                 (int32_t)(list->cell[k].key >> (LATTICE_BITS * a) & LATTICE_MOST);
         cells->kind_of[cells->n] = (uint8_t)(kind[b] - 1);
         cells->body[cells->n] = (int16_t)b;
+        cells->share_of[cells->n] = list->cell[k].share;
         cells->n_of_body[b]++;
     }
     free(kind);
@@ -99,18 +103,23 @@ static void link_cells(struct lattice_cells *cells)
     free(upper);
 }
 
-/* v0 + w0 x (x - x0) about the mean centre x0 of each body's cells; what is fixed stands, what is
+/* v0 + w0 x (x - x0) about the centre of mass x0 of each body; what is fixed stands, what is
  * prescribed starts as prescribed. */
 static void set_velocities(const struct scene *scene, struct lattice_cells *cells)
 {
     double(*middle)[3] = fail_alloc((size_t)scene->n_body * sizeof *middle), x[3];
-    double *rows = fail_alloc((size_t)cells->loads->n_row * LOAD_WIDTH * sizeof *rows);
+    double *rows = fail_alloc((size_t)cells->loads->n_row * LOAD_WIDTH * sizeof *rows),
+           *all = fail_alloc((size_t)scene->n_body * sizeof *all); /* masses, in whole cells */
     bool moves = false;
     for (int64_t i = 0; i < cells->n; i++) {
         lattice_cells_centre(cells, i, x);
+        double mass = lattice_cells_share(cells, i)->mass;
+        all[cells->body[i]] += mass;
         for (int a = 0; a < 3; a++)
-            middle[cells->body[i]][a] += x[a] / (double)cells->n_of_body[cells->body[i]];
+            middle[cells->body[i]][a] += x[a] * mass / (double)cells->n_of_body[cells->body[i]];
     }
+    for (int b = 0; b < scene->n_body; b++)
+        for (int a = 0; a < 3; a++) middle[b][a] *= (double)cells->n_of_body[b] / all[b];
     lattice_loads_at(cells->loads, scene, 0, 0, 0, rows);
     cells->v = fail_alloc((size_t)cells->n * sizeof *cells->v);
     cells->w = fail_alloc((size_t)cells->n * sizeof *cells->w);
@@ -131,6 +140,7 @@ static void set_velocities(const struct scene *scene, struct lattice_cells *cell
     }
     free(middle);
     free(rows);
+    free(all);
     if (moves) return;
     free(cells->v);
     free(cells->w);
@@ -142,7 +152,8 @@ struct lattice_cells *lattice_cells_create(const struct scene *scene, struct sce
     int before = errors->n;
     struct lattice_cells *cells = fail_alloc(sizeof *cells);
     struct lattice_cut *cut = fail_alloc((size_t)scene->n_body * sizeof *cut);
-    struct lattice_list list = {0};
+    struct lattice_list list = {.share = fail_alloc(sizeof *list.share), .n_share = 1};
+    list.share[0] = *lattice_cells_share(cells, 0);
     cells->n_of_body = fail_alloc((size_t)scene->n_body * sizeof *cells->n_of_body);
     if (scene->n_body > INT16_MAX)
         scene_errors_add(errors, "%s: bodies: more than %d", scene->path, INT16_MAX);
@@ -151,10 +162,15 @@ struct lattice_cells *lattice_cells_create(const struct scene *scene, struct sce
     for (int g = 0; g < cells->n_grid && errors->n == before; g++) {
         list.n = 0;
         for (int b = 0; b < scene->n_body; b++)
-            if (cut[b].grid == g) lattice_cut_append(&cut[b], &list);
+            if (cut[b].grid == g && cut[b].is_curved)
+                lattice_cover_append(cut, scene->n_body, b, &list);
+            else if (cut[b].grid == g) lattice_cut_append(&cut[b], &list);
         merge(&list);
         append(cells, scene, g, &list);
     }
+    cells->share = list.share;
+    cells->n_share = list.n_share;
+    lattice_shares_prune(cells);
     if (errors->n == before) check_counts(scene, cells, cut, errors);
     cells->fit = fail_alloc((size_t)scene->n_body * sizeof *cells->fit);
     for (int b = 0; b < scene->n_body; b++) {
@@ -165,6 +181,7 @@ struct lattice_cells *lattice_cells_create(const struct scene *scene, struct sce
     free(list.cell);
     if (errors->n == before) {
         link_cells(cells);
+        lattice_shares_settle(cells);
         lattice_cracks_cut(scene, cells, errors);
         lattice_loads_create(scene, cells, errors);
     }
@@ -188,6 +205,8 @@ void lattice_cells_free(struct lattice_cells *cells)
     free(cells->body);
     free(cells->bits);
     free(cells->row);
+    free(cells->share_of);
+    free(cells->share);
     free(cells->v);
     free(cells->w);
     free(cells->n_of_body);

@@ -21,7 +21,8 @@ static const char *const sources_volume[] = {
 static const struct buffer_spec buffers[] = {ROW(x, "x"), ROW(v, "v"), ROW(sum_x, "sums of x"),
     ROW(sum_v, "sums of v"), ROW(pressure, "pressure"), ROW(ledger, "ledger"), ROW(word, "words"),
     ROW(row, "rows"), ROW(info, "runs"), ROW(base, "bases"), ROW(force_list, "forces"),
-    ROW(volume_list, "volumes"), ROW(link, "links"), ROW(cell, "kinds"), ROW(kick, "kicks"), {0}};
+    ROW(volume_list, "volumes"), ROW(link, "links"), ROW(cell, "kinds"), ROW(kick, "kicks"),
+    ROW(share, "places of shares"), ROW(shares, "shares"), {0}};
 #undef ROW
 
 static void put_table(struct lattice *l, struct buffer *buffer, double *value, int64_t n)
@@ -60,11 +61,15 @@ static void create_tables(struct lattice *l, const struct lattice_cells *cells)
         int64_t n;
     } list[] = {{&l->word, c->word, c->plane}, {&l->row, c->row, c->plane},
         {&l->info, c->info, c->n_run}, {&l->base, c->base, 4 * (int64_t)c->n_run},
-        {&l->force_list, c->force, c->n_force}, {&l->volume_list, c->volume, c->n_volume}};
+        {&l->force_list, c->force, c->n_force}, {&l->volume_list, c->volume, c->n_volume},
+        {&l->share, c->share, l->features.shares ? c->plane : 0}};
     for (size_t k = 0; k < sizeof list / sizeof *list; k++)
         buffer_put(list[k].buffer, (size_t)list[k].n * sizeof *list[k].value, list[k].value);
     put_table(l, &l->link, lattice_features_links(cells, &l->options), (int64_t)n * n * LINK_WIDTH);
     put_table(l, &l->cell, lattice_features_cells(cells, &l->options), (int64_t)n * CELL_WIDTH);
+    if (l->features.shares)
+        put_table(l, &l->shares, lattice_features_shares(cells, &l->options),
+            (int64_t)cells->n_share * SHARE_WIDTH);
     if (l->features.rk) put_table(l, &l->kick, fail_alloc(sizeof(double)), 1);
     else
         put_table(l, &l->kick, lattice_features_kicks(cells, &l->options),

@@ -15,13 +15,23 @@ static void fault_at(const struct lattice_cut *cut, const struct scene *scene,
         cut->index, key, text);
 }
 
-/* Cells along each axis: those with their centre inside the bounding box. */
+/* Whether surfaces of the body do not lie along the grid. */
+static bool is_curved(const struct body *body)
+{
+    bool is = body->shape.kind != REGION_BOX;
+    for (int m = 0; m < body->n_minus; m++) is |= body->minus[m].kind != REGION_BOX;
+    return is;
+}
+
+/* Cells along each axis: those with their centre inside the bounding box, of curved bodies all that
+ * reach into it. */
 static bool count(struct lattice_cut *cut, const struct scene *scene, struct scene_errors *errors)
 {
     double h = cut->body->cell, all = 1;
     for (int a = 0; a < 3; a++) {
         double length = cut->shape.high[a] - cut->shape.low[a],
-               n = floor(length / h + 0.5 + LATTICE_SLACK);
+               n = cut->is_curved ? ceil(length / h - LATTICE_SLACK)
+                                  : floor(length / h + 0.5 + LATTICE_SLACK);
         if (length < h * (1 - LATTICE_SLACK)) {
             char *text = fail_format("%g m, and '%s' has only %.4g m in %c: thinner than a cell", h,
                 cut->body->name, length, "xyz"[a]);
@@ -46,7 +56,9 @@ bool lattice_cut_open(
     struct lattice_cut *cut, const struct scene *scene, int index, struct scene_errors *errors)
 {
     const struct body *body = &scene->body[index];
-    *cut = (struct lattice_cut){.body = body, .index = index};
+    *cut = (struct lattice_cut){.body = body,
+        .index = index,
+        .is_curved = scene->lattice.surface == CURVED_CUT && is_curved(body)};
     cut->minus = fail_alloc((size_t)body->n_minus * sizeof *cut->minus);
     char *text = region_open(&cut->shape, &body->shape);
     bool good = !text;
@@ -129,19 +141,19 @@ bool lattice_cut_place(struct lattice_cut *cut, const struct scene *scene,
     return good;
 }
 
-/* There or not, for the whole bounding box: [z][y][x]. Each column is one walk through the
- * surfaces. */
-static uint8_t *fill(const struct lattice_cut *cut)
+/* Each column is one walk through the surfaces. */
+uint8_t *lattice_cut_fill(const struct lattice_cut *cut, bool corners)
 {
-    double h = cut->body->cell, inset = -LATTICE_SLACK * h;
+    double h = cut->body->cell, inset = -LATTICE_SLACK * h, first = corners ? 0 : 0.5;
     const double *low = cut->shape.low;
-    size_t nx = (size_t)cut->size[0], ny = (size_t)cut->size[1], nz = (size_t)cut->size[2];
+    size_t nx = (size_t)(cut->size[0] + corners), ny = (size_t)(cut->size[1] + corners),
+           nz = (size_t)(cut->size[2] + corners);
     uint8_t *there = fail_alloc(nx * ny * nz), *holds = fail_alloc(nz), *hole = fail_alloc(nz);
     double *z = fail_alloc(nz * sizeof *z);
-    for (size_t k = 0; k < nz; k++) z[k] = low[2] + ((double)k + 0.5) * h;
+    for (size_t k = 0; k < nz; k++) z[k] = low[2] + ((double)k + first) * h;
     for (size_t j = 0; j < ny; j++)
         for (size_t i = 0; i < nx; i++) {
-            double x = low[0] + ((double)i + 0.5) * h, y = low[1] + ((double)j + 0.5) * h;
+            double x = low[0] + ((double)i + first) * h, y = low[1] + ((double)j + first) * h;
             region_column(&cut->shape, x, y, z, (int)nz, inset, holds);
             for (int m = 0; m < cut->body->n_minus; m++) {
                 region_column(&cut->minus[m], x, y, z, (int)nz, inset, hole);
@@ -165,22 +177,32 @@ static void widen(struct lattice_span *span, int i, int j, int k)
     span->n++;
 }
 
+void lattice_cut_add(struct lattice_cut *cut, struct lattice_list *list, const int at[3],
+    bool has_centre, const struct lattice_share *share)
+{
+    if (list->n == list->room) {
+        list->room = list->room ? 2 * list->room : 4096;
+        list->cell = fail_realloc(list->cell, list->room * sizeof *list->cell);
+    }
+    if (share) {
+        if ((list->n_share & (list->n_share - 1)) == 0)
+            list->share =
+                fail_realloc(list->share, 2 * (size_t)list->n_share * sizeof *list->share);
+        list->share[list->n_share++] = *share;
+    }
+    uint64_t x = (uint64_t)(at[0] + cut->shift[0]), y = (uint64_t)(at[1] + cut->shift[1]),
+             z = (uint64_t)(at[2] + cut->shift[2]);
+    list->cell[list->n++] = (struct lattice_cell){(z << LATTICE_BITS | y) << LATTICE_BITS | x,
+        (int16_t)cut->index, has_centre, share ? list->n_share - 1 : 0};
+    widen(&cut->span, at[0], at[1], at[2]);
+}
+
 void lattice_cut_append(struct lattice_cut *cut, struct lattice_list *list)
 {
-    uint8_t *there = fill(cut), *at = there;
+    uint8_t *there = lattice_cut_fill(cut, false), *at = there;
     for (int k = 0; k < cut->size[2]; k++)
         for (int j = 0; j < cut->size[1]; j++)
-            for (int i = 0; i < cut->size[0]; i++) {
-                if (!*at++) continue;
-                if (list->n == list->room) {
-                    list->room = list->room ? 2 * list->room : 4096;
-                    list->cell = fail_realloc(list->cell, list->room * sizeof *list->cell);
-                }
-                uint64_t x = (uint64_t)(i + cut->shift[0]), y = (uint64_t)(j + cut->shift[1]),
-                         z = (uint64_t)(k + cut->shift[2]);
-                list->cell[list->n++] = (struct lattice_cell){
-                    (z << LATTICE_BITS | y) << LATTICE_BITS | x, (int16_t)cut->index};
-                widen(&cut->span, i, j, k);
-            }
+            for (int i = 0; i < cut->size[0]; i++)
+                if (*at++) lattice_cut_add(cut, list, (const int[]){i, j, k}, true, NULL);
     free(there);
 }

@@ -34,6 +34,7 @@ struct lattice_features lattice_features_of(
     for (int k = 0; k < cells->n_kind && o->strength; k++)
         f.principal |= o->strength[k].principal > 0;
     f.energy = o->energy;
+    f.shares = cells->share != NULL;
     return f;
 }
 
@@ -57,6 +58,7 @@ const struct feature_row lattice_features_table[] = {
     ROW(energy, "WITH_ENERGY"),
     ROW(breakage, "WITH_BREAK"),
     ROW(principal, "WITH_PRINCIPAL"),
+    ROW(shares, "WITH_SHARES"),
     {NULL, NULL, 0, 0}};
 /* clang-format on */
 
@@ -106,6 +108,28 @@ double *lattice_features_principal(
     for (int k = 0; k < cells->n_kind; k++)
         inverse[k] = o->strength[k].principal > 0 ? 1 / o->strength[k].principal : 0;
     return inverse;
+}
+
+double *lattice_features_shares(const struct lattice_cells *cells, const struct lattice_options *o)
+{
+    double *table = fail_alloc((size_t)cells->n_share * SHARE_WIDTH * sizeof *table);
+    for (int f = 0; f < 6; f++) table[SHARE_FACE + f] = 1;
+    table[SHARE_VOLUME] = table[SHARE_PER_MASS] = 1;
+    for (int64_t i = 0; i < cells->n; i++) {
+        if (!cells->share_of[i]) continue;
+        const struct lattice_share *s = &cells->share[cells->share_of[i]];
+        const struct link_material *m = &o->material[cells->kind[cells->kind_of[i]].material];
+        double h = cells->grid[cells->kind[cells->kind_of[i]].grid].h,
+               *row = table + (int64_t)cells->share_of[i] * SHARE_WIDTH;
+        for (int f = 0; f < 6; f++) {
+            row[SHARE_FACE + f] = s->face[f];
+            for (int c = 0; c < 2; c++) row[SHARE_OFFSET + 2 * f + c] = s->offset[f][c] * h;
+        }
+        row[SHARE_VOLUME] = s->volume;
+        row[SHARE_PER_MASS] = 1 / s->mass;
+        row[SHARE_LEAST] = link_constants_least_size(o->set, *m);
+    }
+    return table;
 }
 
 double *lattice_features_cells(const struct lattice_cells *cells, const struct lattice_options *o)

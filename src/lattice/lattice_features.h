@@ -47,6 +47,7 @@ struct lattice_features {
     bool rk, nystrom; /* stages of a Runge-Kutta scheme; of Nystrom's */
     bool energy;      /* work and losses are accounted for */
     bool breakage;
+    bool shares;    /* cells that a curved surface cuts */
     bool principal; /* by the stress of cells: kernels/lattice/link_principal.cl */
 };
 
@@ -64,6 +65,8 @@ double *lattice_features_limits(const struct lattice_cells *cells, const struct 
 /* One over the largest principal stress that cells bear [n_kind] [1/Pa], 0: any. */
 double *lattice_features_principal(
     const struct lattice_cells *cells, const struct lattice_options *o);
+/* Shares [n_share][SHARE_WIDTH]. */
+double *lattice_features_shares(const struct lattice_cells *cells, const struct lattice_options *o);
 double *lattice_features_cells(const struct lattice_cells *cells, const struct lattice_options *o);
 /* Kicks [n + 2][n_kind][KICK_WIDTH] of a splitting: its evaluations; the first that ends a step
  * only; the first that begins one only. */

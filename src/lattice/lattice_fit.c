@@ -47,12 +47,13 @@ struct lattice_fit lattice_fit_of(const struct lattice_cut *cut)
         .is_box = body->shape.kind == REGION_BOX, .radius = radius_of(&body->shape)};
     double box = 1, h = body->cell;
     for (int a = 0; a < 3; a++) {
-        fit.cells[a] = (span->high[a] - span->low[a] + 1) * h;
         fit.shape[a] = cut->shape.high[a] - cut->shape.low[a];
+        fit.cells[a] = cut->is_curved ? fit.shape[a] : (span->high[a] - span->low[a] + 1) * h;
         box *= fit.shape[a];
     }
     bool is_whole = fit.is_box && body->n_minus == 0;
-    fit.volume = (double)span->n * h * h * h / (box * (is_whole ? 1 : share_inside(cut)));
+    fit.volume = (cut->is_curved ? cut->covered : (double)span->n) * h * h * h /
+                 (box * (is_whole ? 1 : share_inside(cut)));
     for (int m = 0; m < body->n_minus; m++)
         fit.radius = fmin(fit.radius, radius_of(&body->minus[m]));
     return fit;

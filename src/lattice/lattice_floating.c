@@ -95,7 +95,7 @@ static void load_cell(
         const double *lever = row + LOAD_LEVER + 3 * a; /* e_a x L_a */
         moment[b] -= lever[c] / part->size;
         moment[c] += lever[b] / part->size;
-        moment[a] += r[b] * force[c] - r[c] * force[b];
+        moment[a] += r[b] * force[c] - r[c] * force[b] + row[LOAD_TURN + a] / part->size;
     }
     for (int a = 0; a < 3; a++) {
         part->load[a] += force[a];
@@ -152,7 +152,8 @@ static void load_parts(const struct scene *scene, const struct lattice_cells *ce
         const struct lattice_kind *kind = &cells->kind[cells->kind_of[i]];
         double mass =
             link_constants_mass(lattice_frequency_material(&scene->material[kind->material]),
-                cells->grid[kind->grid].h);
+                cells->grid[kind->grid].h) *
+            lattice_cells_share(cells, i)->mass;
         lattice_cells_centre(cells, i, x);
         for (int a = 0; a < 3; a++) x[a] = (x[a] - p->middle[a]) / p->size;
         hold_cell(p, cells->bits[i], x);

@@ -23,7 +23,7 @@ static int kinds_on(const struct lattice_cells *cells, int grid, int *one)
     return n;
 }
 
-/* Cells first to end - 1, all those of a grid, of several materials. */
+/* Cells first to end - 1, all those of a grid, of several materials or with shares. */
 static double mixed_grid(const struct scene *scene, const struct lattice_cells *cells,
     int64_t first, int64_t end, const struct link_material *materials)
 {
@@ -47,7 +47,9 @@ static double mixed_grid(const struct scene *scene, const struct lattice_cells *
         .neighbour = (const int(*)[6])neighbour,
         .material = cells->kind_of + first,
         .materials = materials,
-        .n_material = cells->n_kind};
+        .n_material = cells->n_kind,
+        .share_of = cells->share_of ? cells->share_of + first : NULL,
+        .share = cells->share};
     double largest = lattice_limit_body(&body, ROUNDS);
     free(neighbour);
     free(upper);
@@ -64,9 +66,10 @@ double lattice_frequency_largest(const struct scene *scene, const struct lattice
     for (int g = 0; g < cells->n_grid; g++, first = end) {
         int kind = 0, n = kinds_on(cells, g, &kind);
         for (end = first; end < cells->n && cells->kind[cells->kind_of[end]].grid == g;) end++;
-        double own = n == 1 ? lattice_limit_uniform((enum link_set)scene->lattice.law,
-                                  materials[kind], cells->grid[g].h)
-                            : mixed_grid(scene, cells, first, end, materials);
+        double own = n == 1 && !cells->share
+                         ? lattice_limit_uniform(
+                               (enum link_set)scene->lattice.law, materials[kind], cells->grid[g].h)
+                         : mixed_grid(scene, cells, first, end, materials);
         largest = fmax(largest, own);
     }
     free(materials);

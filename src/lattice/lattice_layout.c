@@ -105,6 +105,7 @@ static void fill_words(struct build *b)
     struct lattice_layout *l = b->l;
     l->word = fail_alloc((size_t)l->plane * sizeof *l->word);
     l->row = fail_alloc((size_t)l->plane * sizeof *l->row);
+    l->share = fail_alloc((size_t)l->plane * sizeof *l->share);
     l->gid = fail_alloc((size_t)b->cells->n * sizeof *l->gid);
     l->index = fail_alloc((size_t)b->cells->n * sizeof *l->index);
     for (int64_t i = 0; i < b->cells->n; i++) {
@@ -114,13 +115,15 @@ static void fill_words(struct build *b)
                       (b->cells->bits[i] & 63 << WORD_FIX) | (b->mark[i] == OWNED) << WORD_OWNED |
                       b->cells->kind_of[i] << WORD_KIND;
         l->row[at] = b->cells->row ? b->cells->row[i] : 0;
+        l->share[at] = b->cells->share ? b->cells->share_of[i] : 0;
         if (b->mark[i] != OWNED) continue;
         l->gid[l->n_owned] = i;
         l->index[l->n_owned++] = at;
     }
 }
 
-/* Whether a run is of one kind, neighbours included, without loads and fixed DOF. */
+/* Whether a run is of one kind, neighbours included, without loads, fixed DOF and cells that a
+ * surface cuts. That one has shares does not depend on which of its cells a rank has. */
 static void fill_info(struct build *b)
 {
     struct lattice_layout *l = b->l;
@@ -140,6 +143,10 @@ static void fill_info(struct build *b)
     }
     for (int r = 0; r < l->n_run; r++)
         if (l->info[r] < 0) l->info[r] = 0;
+    for (int64_t i = 0; i < b->cells->n && b->cells->share; i++) {
+        int r = b->local[b->places->run_of[i]];
+        if (r && b->cells->share_of[i]) l->info[r] |= RUN_MIXED;
+    }
 }
 
 /* A run and where it comes in the order of kernels. */
@@ -326,8 +333,8 @@ bool lattice_layout_is_valid(const struct lattice_layout *l, int n_rank)
 void lattice_layout_free(struct lattice_layout *l)
 {
     if (!l) return;
-    void *all[] = {l->base, l->info, l->word, l->row, l->gid, l->index, l->force, l->volume,
-        l->count_to, l->count_from, l->send, l->recv};
+    void *all[] = {l->base, l->info, l->word, l->row, l->share, l->gid, l->index, l->force,
+        l->volume, l->count_to, l->count_from, l->send, l->recv};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) free(all[k]);
     free(l);
 }

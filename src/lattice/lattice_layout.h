@@ -22,8 +22,9 @@ struct lattice_layout {
     /* [n_run] kind of all cells in and around the run; + 256: kinds differ, or cells have loads or
      * fixed DOF */
     int *info;
-    int *word; /* [plane] kernels/lattice/lattice_state.h */
-    int *row;  /* [plane] row of loads */
+    int *word;  /* [plane] kernels/lattice/lattice_state.h */
+    int *row;   /* [plane] row of loads */
+    int *share; /* [plane] row of shares */
     int64_t n_owned;
     int64_t *gid; /* [n_owned] ascending */
     int *index;   /* [n_owned] */

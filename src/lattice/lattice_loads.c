@@ -5,19 +5,20 @@
 #include <string.h>
 
 #include "comm/fail.h"
+#include "lattice_facet.h"
 #include "scene/history.h"
 #include "lattice_parts.h"
 
 /* What a boundary takes of a cell: bits 0-5 its free faces, as links; bit 6 the cell itself, by its
- * centre. */
-enum { TAKES_FACES = 63, TAKES_CENTRE = 64, TAKES_ALL = 128 };
+ * centre; bit 7 the part of a curved surface in it. */
+enum { TAKES_FACES = 63, TAKES_CENTRE = 64, TAKES_FACET = 128, TAKES_ALL = 256 };
 
 /* The combination of loads of a cell while it grows: that of `parent`, and one more boundary. Roots
  * stand for grids, without a load. */
 struct node {
     int parent, boundary, takes; /* parent -1: root */
-    int grid;
-    int64_t n_share;
+    int grid, share;             /* share: row of cells->share, 0: whole */
+    double n_share;              /* cells, or areas in whole faces */
 };
 
 struct builder {
@@ -27,6 +28,7 @@ struct builder {
     uint8_t *takes;   /* [n] of the boundary at hand */
     int64_t n_centre; /* cells by their centre ... */
     int64_t n_face;   /* ... and faces, that it takes */
+    double area;      /* of these, in whole faces */
     uint8_t *moved;   /* [n] DOF with a prescribed velocity */
     struct node *node;
     int n_node, n_room;
@@ -40,6 +42,15 @@ static void fault(const struct builder *b, int k, const char *key, const char *t
     lattice_fault(b->scene, b->errors, of->line, of->column, "boundaries[%d].%s: %s", k, key, text);
 }
 
+/* Area of the faces and the part of a curved surface that are taken, in whole faces. */
+static double area_of(const struct lattice_share *share, int takes)
+{
+    double area = 0, vector[3];
+    for (int f = 0; f < 6; f++) area += takes >> f & 1 ? share->face[f] : 0;
+    if (takes & TAKES_FACET) area += lattice_facet_area(share, vector);
+    return area;
+}
+
 /* Cells and free faces in the region of boundary k. */
 static void choose(struct builder *b, int k)
 {
@@ -48,8 +59,10 @@ static void choose(struct builder *b, int k)
     struct region_shape shape;
     free(region_open(&shape, &of->where)); /* none of these regions can fail */
     b->n_centre = b->n_face = 0;
+    b->area = 0;
     for (int64_t i = 0; i < cells->n; i++) {
-        double h = cells->grid[cells->kind[cells->kind_of[i]].grid].h, x[3];
+        const struct lattice_share *share = lattice_cells_share(cells, i);
+        double h = cells->grid[cells->kind[cells->kind_of[i]].grid].h, x[3], vector[3];
         bool near = of->body < 0 || of->body == cells->body[i];
         b->takes[i] = 0;
         lattice_cells_centre(cells, i, x);
@@ -61,10 +74,19 @@ static void choose(struct builder *b, int k)
         for (int f = 0; f < 6; f++) {
             double y[3] = {x[0], x[1], x[2]};
             y[f / 2] += (f & 1) ? 0.5 * h : -0.5 * h;
-            if (cells->bits[i] & (1 << f) || !region_holds(&shape, y, -LATTICE_SLACK * h)) continue;
+            for (int c = 0; c < 2; c++) y[(f / 2 + 1 + c) % 3] += share->offset[f][c] * h;
+            if (cells->bits[i] & (1 << f) || !(share->face[f] > 0) ||
+                !region_holds(&shape, y, -LATTICE_SLACK * h))
+                continue;
             takes |= 1 << f;
             b->n_face++;
         }
+        for (int a = 0; a < 3; a++) x[a] += share->facet[a] * h;
+        if (lattice_facet_area(share, vector) > 0 && region_holds(&shape, x, 0)) {
+            takes |= TAKES_FACET;
+            b->n_face++;
+        }
+        b->area += area_of(share, takes);
         b->takes[i] = (uint8_t)takes;
     }
     region_close(&shape);
@@ -143,12 +165,14 @@ static void refine(struct builder *b, int k)
     size_t n = (size_t)b->n_node * TAKES_ALL;
     /* [node][takes]; 0: none yet, since roots are never children */
     int *child = fail_alloc(n * sizeof *child);
-    int64_t n_share = b->n_face > 0 ? b->n_face : b->n_centre;
+    double n_share = b->n_face > 0 ? b->area : (double)b->n_centre;
     for (int64_t i = 0; i < b->cells->n; i++) {
         int takes = b->takes[i], row = b->cells->row[i];
         if (!takes) continue;
-        int *to = &child[(size_t)row * TAKES_ALL + (size_t)takes];
-        if (!*to) *to = add_node(b, (struct node){row, k, takes, b->node[row].grid, n_share});
+        int share = b->cells->share ? b->cells->share_of[i] : 0, none = 0,
+            *to = share ? &none : &child[(size_t)row * TAKES_ALL + (size_t)takes];
+        if (!*to)
+            *to = add_node(b, (struct node){row, k, takes, b->node[row].grid, share, n_share});
         b->cells->row[i] = *to;
     }
     free(child);
@@ -163,15 +187,17 @@ static void load(struct builder *b, int k)
         fault(b, k, "where", "no free face has its centre in this region");
         return;
     }
-    for (int64_t i = 0; i < b->cells->n; i++) b->takes[i] &= on_faces ? TAKES_FACES : TAKES_CENTRE;
+    for (int64_t i = 0; i < b->cells->n; i++)
+        b->takes[i] &= on_faces ? TAKES_FACES | TAKES_FACET : TAKES_CENTRE;
     if (of->kind != BOUNDARY_VELOCITY && of->kind != BOUNDARY_ANGULAR_VELOCITY) check_moves(b, k);
     refine(b, k);
 }
 
-static void fill_term(const struct scene *scene, const struct node *node, double h, double *value)
+static void fill_term(const struct scene *scene, const struct node *node,
+    const struct lattice_share *share, double h, double *value)
 {
     const struct boundary *of = &scene->boundary[node->boundary];
-    double n = (double)node->n_share, area = h * h;
+    double n = node->n_share, area = h * h;
     if (of->kind == BOUNDARY_FORCE && node->takes == TAKES_CENTRE)
         for (int c = 0; c < 3; c++) value[LOAD_FORCE + c] = of->value[c] / n;
     if (of->kind == BOUNDARY_ACCELERATION)
@@ -182,20 +208,32 @@ static void fill_term(const struct scene *scene, const struct node *node, double
                 value[LOAD_VELOCITY + (of->kind == BOUNDARY_VELOCITY ? 0 : 3) + c] = of->value[c];
     for (int f = 0; f < 6; f++) {
         if (!(node->takes >> f & 1)) continue;
-        double sign = (f & 1) ? 1 : -1;
+        double sign = (f & 1) ? 1 : -1, part = share->face[f];
         int a = f / 2;
         if (of->kind == BOUNDARY_FORCE) {
             for (int c = 0; c < 3; c++) {
-                value[LOAD_FORCE + c] += of->value[c] / n;
-                value[LOAD_LEVER + 3 * a + c] += sign * 0.5 * h * (of->value[c] / n);
+                value[LOAD_FORCE + c] += of->value[c] / n * part;
+                value[LOAD_LEVER + 3 * a + c] += sign * 0.5 * h * (of->value[c] / n * part);
+                for (int d = 0; d < 2; d++)
+                    value[LOAD_LEVER + 3 * ((a + 1 + d) % 3) + c] +=
+                        share->offset[f][d] * h * (of->value[c] / n * part);
             }
             value[LOAD_NORMAL + f] += sign * (of->value[a] / n) / area;
         } else {
-            value[LOAD_BODY + a] -= sign * of->pressure * area;
+            value[LOAD_BODY + a] -= sign * of->pressure * area * part;
             value[LOAD_NORMAL + f] -= of->pressure;
+            /* d x F of the offset d */
+            value[LOAD_TURN + (a + 1) % 3] -=
+                share->offset[f][1] * h * sign * of->pressure * area * part;
+            value[LOAD_TURN + (a + 2) % 3] +=
+                share->offset[f][0] * h * sign * of->pressure * area * part;
         }
-        value[LOAD_TRACTION] += value[LOAD_NORMAL + f];
+        value[LOAD_TRACTION] += value[LOAD_NORMAL + f] * part;
+        value[LOAD_NORMAL + f] *= sqrt(part);
     }
+    if (node->takes & TAKES_FACET)
+        lattice_facet_load(
+            share, h, of->kind == BOUNDARY_FORCE ? of->value : NULL, n, of->pressure, value);
 }
 
 /* Rows in the order in which cells name them first; those on the way to others vanish. */
@@ -226,8 +264,10 @@ static void number_rows(struct builder *b)
         int term = loads->begin[r + 1];
         for (int node = node_of[r]; b->node[node].parent >= 0; node = b->node[node].parent) {
             loads->boundary[--term] = b->node[node].boundary;
-            fill_term(
-                b->scene, &b->node[node], b->cells->grid[b->node[node].grid].h, loads->value[term]);
+            const struct node *of = &b->node[node];
+            static const struct lattice_share whole = {.face = {1, 1, 1, 1, 1, 1}};
+            fill_term(b->scene, of, of->share ? &b->cells->share[of->share] : &whole,
+                b->cells->grid[of->grid].h, loads->value[term]);
         }
     }
     free(row_of);

@@ -91,6 +91,13 @@ static const struct weight *weight_of(const struct lattice_relax *r, int64_t k)
     return &r->weight[r->cells->kind_of[r->l->layout->gid[k]]];
 }
 
+/* Mass or inertia of DOF c of cell k. */
+static double mass_of(const struct lattice_relax *r, int64_t k, int c)
+{
+    double share = lattice_cells_share(r->cells, r->l->layout->gid[k])->mass;
+    return weight_of(r, k)->mass[c] * (c < 3 ? share : 1);
+}
+
 /* Of this rank's cells [n_owned]: velocities of half a step ago, and the accelerations of the
  * observed state, v_now = f v_before + g a. */
 static void read_state(const struct lattice_relax *r, row *before, row *a)
@@ -117,7 +124,7 @@ static double dot(const struct lattice_relax *r, const row *x, const row *y)
     struct sum sum = {0};
     for (int64_t k = 0; k < r->l->layout->n_owned; k++)
         for (int c = 0; c < LATTICE_V; c++) {
-            most[0] = fmax(most[0], weight_of(r, k)->mass[c]);
+            most[0] = fmax(most[0], mass_of(r, k, c));
             most[1] = fmax(most[1], fabs(x[k][c]));
             most[2] = fmax(most[2], fabs(y[k][c]));
         }
@@ -125,8 +132,7 @@ static double dot(const struct lattice_relax *r, const row *x, const row *y)
     if (!(most[1] > 0) || !(most[2] > 0)) return 0;
     for (int64_t k = 0; k < r->l->layout->n_owned; k++)
         for (int c = 0; c < LATTICE_V; c++)
-            sums_add(&sum,
-                weight_of(r, k)->mass[c] / most[0] * (x[k][c] / most[1]) * (y[k][c] / most[2]));
+            sums_add(&sum, mass_of(r, k, c) / most[0] * (x[k][c] / most[1]) * (y[k][c] / most[2]));
     integer_sums_all(r->l->comm, &sum, 1, &value);
     return value * most[0] * most[1] * most[2];
 }
@@ -182,8 +188,9 @@ static void measure(struct lattice_relax *r, const row *v, const row *a)
     for (size_t k = 0; k < n; k++) {
         const struct weight *w = weight_of(r, (int64_t)k);
         for (int c = 0; c < LATTICE_V; c++) {
-            raise(&largest[0], w->force[c] * w->mass[c] * a[k][c]);
-            raise(&largest[0], w->force[c] * w->mass[c] * r->rest.alpha * v[k][c]);
+            double mass = mass_of(r, (int64_t)k, c);
+            raise(&largest[0], w->force[c] * mass * a[k][c]);
+            raise(&largest[0], w->force[c] * mass * r->rest.alpha * v[k][c]);
         }
         for (int c = 0; c < 9; c++) raise(&largest[1], w->face * stress[k][c]);
     }

@@ -194,6 +194,7 @@ double lattice_limit_body(const struct lattice_body *body, int rounds)
     size_t n = (size_t)body->n;
     double bound = HUGE_VAL;
     if (n == 0) return 0;
+    if (body->share) return lattice_limit_cut(body, rounds);
     if (is_uniform(body))
         return lattice_limit_uniform(body->set, body->materials[body->material[0]], body->h);
     double(*z)[6] = fail_alloc(n * sizeof *z), (*Bz)[6] = fail_alloc(n * sizeof *Bz),

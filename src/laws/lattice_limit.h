@@ -11,7 +11,9 @@
  *     w_max^2 <= max over the DOF k of (B z)_k/z_k,  B = M^-1 |K|
  * (Collatz and Wielandt), |K| entry by entry: the 6 x 6 diagonal blocks assembled with signs first,
  * the volumetric part as |T|^T |D| |T|, Th = T u. Replacing z by B z never raises the bound. A link
- * that breaks later does not raise w_max. */
+ * that breaks later does not raise w_max.
+ *
+ * Bodies with cells that a surface cuts: the same bound, lattice_limit_cut.c. */
 #ifndef DEMOCLES_LATTICE_LIMIT_H
 #define DEMOCLES_LATTICE_LIMIT_H
 
@@ -31,6 +33,17 @@ double lattice_limit_factor(enum lattice_scheme scheme, double zeta);
 /* w_max [rad/s] of one material. */
 double lattice_limit_uniform(enum link_set set, struct link_material m, double h);
 
+/* What the body covers of a cell that its surface cuts. Lengths in edges of the cell, from its
+ * centre. */
+struct lattice_share {
+    /* share of each face, -x, +x, -y, +y, -z, +z: of its link, or covered without a link */
+    double face[6];
+    double offset[6][2]; /* middle of that part, along the two axes after the face's */
+    double volume, mass; /* shares */
+    double centre[3];    /* middle of what is covered */
+    double facet[3];     /* a point of the surface */
+};
+
 /* Cells 0 to n - 1, and those that their neighbours name beyond (of other ranks, say). */
 struct lattice_body {
     enum link_set set;
@@ -42,6 +55,8 @@ struct lattice_body {
     const uint8_t *links;
     /* [n]: bits of faces without neighbour that a link joins to a rigid wall; NULL: none */
     const uint8_t *walls;
+    const int32_t *share_of;               /* [n]: row of `share`, 0: whole; NULL: all are */
+    const struct lattice_share *share;     /* row 0 is that of a whole cell */
     const uint8_t *material;               /* [all]: row of the table */
     const struct link_material *materials; /* [n_material] */
     int n_material;
@@ -50,6 +65,9 @@ struct lattice_body {
 /* w_max [rad/s]: lattice_limit_uniform if that is right for the body, else the bound after `rounds`
  * rounds (30 come within a few per cent of where it goes). All neighbours must be in 0 to n - 1. */
 double lattice_limit_body(const struct lattice_body *body, int rounds);
+
+/* The bound of a body with shares. */
+double lattice_limit_cut(const struct lattice_body *body, int rounds);
 
 /* One round in two parts, for a body on several ranks: the caller brings in z, and then s, of the
  * cells beyond n. z [all][6], in the order u_x u_y u_z theta_x theta_y theta_z; any positive

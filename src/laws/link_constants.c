@@ -75,6 +75,11 @@ struct link_stiffness link_constants_wall(enum link_set set, struct link_materia
     return k;
 }
 
+double link_constants_least_size(enum link_set set, struct link_material m)
+{
+    return 0.25 * (1 + link_constants_lambda(set, m) / (4 * link_constants_shear(m)));
+}
+
 bool link_constants_shear_apart(struct link_stiffness k)
 {
     return k.kn < k.ks || k.kn > k.ks;

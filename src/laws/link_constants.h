@@ -63,6 +63,9 @@ struct link_stiffness link_constants_between(
 /* Half a link from the cell i to a rigid wall at its upper face; at its lower face r_i and r_j
  * change places. */
 struct link_stiffness link_constants_wall(enum link_set set, struct link_material i, double h);
+/* Least size D of a cell that a surface cuts, kernels/lattice/law_volume.h [1]: a quarter of that
+ * of a whole cell with one face missing. */
+double link_constants_least_size(enum link_set set, struct link_material m);
 /* Whether kn != ks, kt != kb: what the kernels have flags for (kernels/lattice/law_link.h). */
 bool link_constants_shear_apart(struct link_stiffness k);
 bool link_constants_twist_apart(struct link_stiffness k);

@@ -158,10 +158,12 @@ struct boundary {
 
 enum lattice_law { LAW_ISOTROPIC, LAW_REFERENCE }; /* in the order of enum link_set */
 enum rotation { ROTATION_FINITE, ROTATION_SMALL };
+enum curved_surface { CURVED_CUT, CURVED_STEPPED };
 enum stress_form { STRESS_AVERAGE, STRESS_EXTRAPOLATED };
 struct lattice_method {
     enum lattice_law law;
     enum rotation rotation;
+    enum curved_surface surface;
     enum stress_form stress; /* of cells at a surface */
     bool relax;              /* look for equilibrium, and stop there */
     double tolerance;        /* [1] of the largest load */

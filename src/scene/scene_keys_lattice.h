@@ -13,7 +13,8 @@
     .text = "edge length of the cubic cells; their grid starts at the low corner of the body's "
         "bounding box, and bodies whose grids agree are joined"},
 {"bodies[].shape", KEY_MAP, NEEDED,
-    .text = "shape of the body: it consists of the cells whose centre is inside"},
+    .text = "shape of the body: it consists of the cells whose centre is inside, and at a curved "
+        "surface of those that it covers in part (lattice.surface)"},
 BOX_KEYS("bodies[].shape", body, shape., ONE_OF),
 CYLINDER_KEYS("bodies[].shape", body, shape., ONE_OF),
 SPHERE_KEYS("bodies[].shape", body, shape., ONE_OF),
@@ -100,6 +101,11 @@ SPHERE_KEYS("boundaries[].where", boundary, where., AT_MOST_ONE),
     .at = AT(scene, lattice.stress),
     .text = "stress of a cell with a free face; average: true average over the cell (half of it at "
         "the surface); extrapolated: from the faces that have links"},
+{"lattice.surface", KEY_CHOICE, .fallback = "cut", .words = "cut|stepped",
+    .at = AT(scene, lattice.surface),
+    .text = "curved surfaces (bodies with a cylinder, sphere or mesh in shape or minus); cut: "
+        "cells and links have the covered share of their volume and faces; stepped: a cell is "
+        "there or not, as in bodies of boxes alone"},
 {"lattice.relax", KEY_MAP, .mark = HAS(scene, lattice.relax),
     .text = "dynamic relaxation: the run finds the static equilibrium under the loads of time.end, "
         "and stops there"},

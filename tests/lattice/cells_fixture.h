@@ -8,14 +8,17 @@
 
 #include "lattice/lattice_cells.h"
 #include "lattice/lattice_loads.h"
-#include "kernels/lattice/law_volume.h"
+#include "kernels/lattice/lattice_words.h"
 
-#define LATTICE(bodies)                                                                            \
+#define LATTICE_OF(surface, bodies)                                                                \
     "method: lattice\n"                                                                            \
     "time: {end: 1}\n"                                                                             \
     "materials: {a: {density: 1, young: 1, poisson: 0}, "                                          \
     "b: {density: 2, young: 3, poisson: 0.2}}\n"                                                   \
-    "bodies:\n" bodies
+    "bodies:\n" bodies "lattice: {surface: " surface "}\n"
+/* Whole cells alone, and cells that surfaces cut. */
+#define LATTICE(bodies) LATTICE_OF("stepped", bodies)
+#define CURVED(bodies) LATTICE_OF("cut", bodies)
 #define BODY(name, material, cell, shape)                                                          \
     " - {name: " name ", material: " material ", cell: " cell ", shape: {" shape "}}\n"
 #define BOX(x, y, z, X, Y, Z) "box: {min: [" #x ", " #y ", " #z "], max: [" #X ", " #Y ", " #Z "]}"

@@ -78,6 +78,46 @@ struct lattice_cells *bodies_create(
     return c;
 }
 
+static double part(int64_t i, int what)
+{
+    return 0.2 +
+           0.8 * (double)(mpi_check_random((uint64_t)(64 * i + what)) >> 11) / 9007199254740992.0;
+}
+
+void bodies_cut(struct lattice_cells *c)
+{
+    int32_t *upper = fail_alloc((size_t)c->n * sizeof *upper);
+    c->share_of = fail_alloc((size_t)c->n * sizeof *c->share_of);
+    c->share = fail_alloc((size_t)(c->n + 1) * sizeof *c->share);
+    c->share[c->n_share++] =
+        (struct lattice_share){.face = {1, 1, 1, 1, 1, 1}, .volume = 1, .mass = 1};
+    for (int64_t i = 0; i < c->n; i++) {
+        if (c->at[i][1] > 2) continue;
+        struct lattice_share *s = &c->share[c->n_share];
+        c->share_of[i] = c->n_share++;
+        *s = (struct lattice_share){.volume = part(i, 1), .mass = part(i, 2)};
+        for (int f = 0; f < 6; f++) {
+            s->face[f] = part(i, 3 + f);
+            for (int k = 0; k < 2; k++) s->offset[f][k] = part(i, 9 + 2 * f + k) - 0.6;
+        }
+    }
+    for (int a = 0; a < 3; a++) {
+        lattice_cells_upper(c, a, upper);
+        for (int64_t i = 0; i < c->n; i++) {
+            if (upper[i] < 0 || !c->share_of[i]) continue;
+            struct lattice_share *s = &c->share[c->share_of[i]],
+                                 *t = &c->share[c->share_of[upper[i]]];
+            if (!c->share_of[upper[i]]) s->face[2 * a + 1] = 1;
+            else t->face[2 * a] = s->face[2 * a + 1];
+            for (int k = 0; k < 2; k++) {
+                if (!c->share_of[upper[i]]) s->offset[2 * a + 1][k] = 0;
+                else t->offset[2 * a][k] = s->offset[2 * a + 1][k];
+            }
+        }
+    }
+    free(upper);
+}
+
 void bodies_free(struct lattice_cells *c)
 {
     if (!c) return;
@@ -88,6 +128,8 @@ void bodies_free(struct lattice_cells *c)
     free(c->body);
     free(c->bits);
     free(c->row);
+    free(c->share_of);
+    free(c->share);
     free(c->v);
     free(c->w);
     free(c);

@@ -24,6 +24,8 @@ struct lattice_cells *bodies_create(
     int n_grid, const int size[3], double h, int n_material, bodies_solid *solid);
 void bodies_free(struct lattice_cells *c);
 /* Random velocities of that size; fixed DOF 0. */
+/* Gives some cells shares of their faces, the same at both ends of a link, of volume and mass. */
+void bodies_cut(struct lattice_cells *c);
 void bodies_shake(struct lattice_cells *c, double v, double w);
 
 /* Room for the motion of n cells: at rest in place. */

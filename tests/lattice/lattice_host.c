@@ -2,13 +2,27 @@
 
 #include <string.h>
 
-static struct link_constants constants(const struct host *h, int64_t lower, int64_t higher)
+/* NULL: the cells are whole. */
+static const real *shares_of(const struct host *h, int64_t i)
+{
+    return WITH_SHARES ? h->share + h->cells->share_of[i] * SHARE_WIDTH : NULL;
+}
+
+static real per_mass(const struct host *h, int64_t i)
+{
+    real whole = h->cell[h->cells->kind_of[i] * CELL_WIDTH];
+    return WITH_SHARES ? whole * shares_of(h, i)[SHARE_PER_MASS] : whole;
+}
+
+static struct link_constants constants(
+    const struct host *h, int64_t lower, int64_t higher, int axis)
 {
     struct link_constants k;
     const real *row =
         h->link +
         (h->cells->kind_of[lower] * h->cells->n_kind + h->cells->kind_of[higher]) * LINK_WIDTH;
     k = lattice_constants_of(row);
+    if (WITH_SHARES) k = lattice_constants_cut(k, shares_of(h, lower), 2 * axis + 1);
     return k;
 }
 
@@ -44,11 +58,12 @@ static void pressures_in(const struct host *h, bool still, real *p)
             int64_t j = h->neighbour[i][f];
             struct link_cell other = j < 0 ? me : still ? at_rest(h->now[j]) : h->now[j];
             if (j >= 0)
-                sum += lattice_stretch(
-                    f, 1, me, other, f % 2 ? constants(h, i, j) : constants(h, j, i), cell[5]);
+                sum += lattice_stretch(f, 1, me, other,
+                    f % 2 ? constants(h, i, j, f / 2) : constants(h, j, i, f / 2), cell[5]);
             else sum += 0;
         }
-        struct volume_constants c = {cell[2], cell[3], cell[4], cell[7]};
+        struct volume_constants c;
+        c = lattice_volume_of(cell, shares_of(h, i), h->links[i]);
         p[i] = c.lambda *
                volume_strain(sum, WITH_LOADS ? load_of(h, i).traction : (real)0, h->links[i], c);
     }
@@ -74,7 +89,8 @@ static struct link_share share_of(const struct host *h, int64_t i, int face, boo
     int64_t j = h->neighbour[i][face];
     if (j < 0) return none;
     const real *p = still ? h->p_still : h->p;
-    struct link_constants k = face % 2 ? constants(h, i, j) : constants(h, j, i);
+    struct link_constants k =
+        face % 2 ? constants(h, i, j, face / 2) : constants(h, j, i, face / 2);
     return lattice_link(face, 1, still ? at_rest(h->now[i]) : h->now[i],
         still ? at_rest(h->now[j]) : h->now[j], k, p[i], p[j]);
 }
@@ -118,8 +134,8 @@ static struct pull pull_of(const struct host *h, int64_t i)
         r.now_v = load.now_v;
         r.now_w = load.now_w;
     }
-    r.a =
-        WITH_LOADS || WITH_GRAVITY ? v3_fma(cell[0], sum.force, add) : v3_scale(cell[0], sum.force);
+    r.a = WITH_LOADS || WITH_GRAVITY ? v3_fma(per_mass(h, i), sum.force, add)
+                                     : v3_scale(per_mass(h, i), sum.force);
     r.b = v3_scale(cell[1], sum.torque);
     return r;
 }
@@ -142,7 +158,8 @@ static void split(struct host *h, int k, double drift, int count, struct link_ce
         part[0] = lattice_kick_of(kick);
         part[1] = lattice_kick_of(kick + KICK_PART);
         h->ledger[i] = lattice_work_split(h->ledger[i], r.effort, c, r.a, r.b, part[0], part[1],
-            h->cells->bits[i], (double)cell[6], 1 / (double)cell[0], 1 / (double)cell[1], count);
+            h->cells->bits[i], (double)cell[6], 1 / (double)per_mass(h, i), 1 / (double)cell[1],
+            count);
         for (int n = 0; n < 2; n++) {
             c.v = lattice_kick(c.v, r.a, part[n].f, part[n].g);
             c.w = lattice_kick(c.w, r.b, part[n].f, part[n].g);
@@ -161,6 +178,8 @@ static struct stress stress_of(
     real edge = h->link[h->cells->kind_of[i] * (h->cells->n_kind + 1) * LINK_WIDTH + 6];
     for (int face = 0; face < 6; face++) *force[face] = share_of(h, i, face, false).force;
     if (WITH_LOADS) load = load_of(h, i);
+    if (WITH_SHARES && h->cells->share_of[i])
+        return lattice_stress_cut(*f, h->now[i], h->links[i], edge, shares_of(h, i));
     return lattice_stress_of(*f, h->now[i], load, h->links[i], edge, extrapolate);
 }
 
@@ -201,8 +220,10 @@ static void judge(struct host *h)
                 h->limit +
                 (h->cells->kind_of[i] * h->cells->n_kind + h->cells->kind_of[j]) * BREAK_WIDTH;
             LATTICE_LIMITS(limits, row);
+            if (WITH_SHARES)
+                limits = lattice_limits_cut(limits, shares_of(h, i)[SHARE_FACE + 2 * axis + 1]);
             h->fate[i] |= lattice_fate(
-                axis, h->now[i], h->now[j], constants(h, i, j), h->p[i], h->p[j], limits);
+                axis, h->now[i], h->now[j], constants(h, i, j, axis), h->p[i], h->p[j], limits);
         }
     if (WITH_PRINCIPAL) judge_cells(h);
 }
@@ -270,9 +291,9 @@ static void enter(struct host *h, int64_t i, struct link_cell c, const struct pu
         c = lattice_speed_of(c, r->a, r->b, h->last_a[i], h->last_b[i], speed, k == 0);
     h->last_a[i] = r->a;
     h->last_b[i] = r->b;
-    h->ledger[i] =
-        lattice_work_stage(h->ledger[i], r->effort, c, h->cells->bits[i], (double)cell[6],
-            1 / (double)cell[0], 1 / (double)cell[1], (double)(real)(of->sum_k * h->options.dt));
+    h->ledger[i] = lattice_work_stage(h->ledger[i], r->effort, c, h->cells->bits[i],
+        (double)cell[6], 1 / (double)per_mass(h, i), 1 / (double)cell[1],
+        (double)(real)(of->sum_k * h->options.dt));
 }
 
 static void rk_step(struct host *h)

@@ -21,6 +21,7 @@ struct host {
     vec3 *last_a, *last_b;                /* [n] accelerations of the stage before */
     int *links, *fate;                    /* [n] links left; kernels/lattice/lattice_words.h */
     real *link, *cell, *kick, *rows;      /* tables */
+    real *share;                          /* NULL: all cells are whole */
     real *limit, *inverse;                /* NULL: nothing breaks */
     int *due;                             /* [n] links that go with the next step */
     double *rows_double;

@@ -42,6 +42,9 @@ struct host *host_create(const struct lattice_cells *cells, const struct lattice
     h->last_b = fail_alloc(n * sizeof *h->last_b);
     h->link = reals(lattice_features_links(cells, options), (int64_t)k * k * LINK_WIDTH);
     h->cell = reals(lattice_features_cells(cells, options), (int64_t)k * CELL_WIDTH);
+    if (WITH_SHARES)
+        h->share =
+            reals(lattice_features_shares(cells, options), (int64_t)cells->n_share * SHARE_WIDTH);
     if (!h->scheme->is_rk)
         h->kick = reals(
             lattice_features_kicks(cells, options), (int64_t)(h->scheme->n + 2) * k * KICK_WIDTH);
@@ -72,7 +75,7 @@ void host_free(struct host *h)
 {
     void *all[] = {h->neighbour, h->now, h->next, h->start, h->sums, h->p, h->p_still, h->links,
         h->fate, h->due, h->inverse, h->ledger, h->last_a, h->last_b, h->limit, h->link, h->cell,
-        h->kick, h->rows, h->rows_double};
+        h->kick, h->rows, h->rows_double, h->share};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) free(all[k]);
     free(h);
 }

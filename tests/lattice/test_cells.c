@@ -110,13 +110,11 @@ static void surfaces(void **state)
     for (int k = 0; k < 4; k++)
         for (int n = 0; n < 3; n++) memcpy(corner + 9 * k + 3 * n, p[face[k][n]], sizeof p[0]);
     char *path = scratch_stl(corner, 4);
-    char *shape =
-        fail_format(LATTICE(" - {name: t, material: a, cell: 0.04, shape: {stl: %s}"), path);
-    char *
-        text = fail_format("%s}\n", shape),
-       *holed = fail_format(
-           "%s, minus: [{cylinder: {from: [0.25, 0.25, -1], to: [0.25, 0.25, 1], radius: 0.1}}]}\n",
-           shape);
+    static const char scene[] =
+        LATTICE(" - {name: t, material: a, cell: 0.04, shape: {stl: %s}%s}\n"),
+                      hole[] = ", minus: [{cylinder: {from: [0.25, 0.25, -1], to: [0.25, 0.25, 1], "
+                               "radius: 0.1}}]";
+    char *text = fail_format(scene, path, ""), *holed = fail_format(scene, path, hole);
     struct cut cut = cut_scene(f, text);
     check_set(cut, low, high, in_tetrahedron);
     cut_verify(cut.cells);
@@ -127,7 +125,6 @@ static void surfaces(void **state)
     cut_free(cut);
     free(text);
     free(holed);
-    free(shape);
     scratch_remove(path);
 
     scratch_box((double[]){0, 0, 0}, (double[]){500, 400, 300}, corner);

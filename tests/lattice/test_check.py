@@ -78,8 +78,8 @@ lattice: {{rotation: small{relax}}}
 class Fit(cli.Case):
     """What the cells make of a shape."""
 
-    def warnings(self, shape, cell="13 mm"):
-        self.put("scene.yaml", BLOCK.format(shape=shape, cell=cell, loads="", relax=""))
+    def warnings(self, shape, cell="13 mm", more=""):
+        self.put("scene.yaml", BLOCK.format(shape=shape, cell=cell, loads="", relax=more))
         run = self.call("check", "scene.yaml")
         self.assertEqual((run.code, run.err), (0, []))
         return run.out, [line.strip() for line in run.out.splitlines() if "warning" in line]
@@ -102,16 +102,21 @@ class Fit(cli.Case):
         self.assertEqual(self.warnings(box.format("40 mm, 20 mm, 20 mm"), "10 mm")[1], [])
 
     def test_round(self):
-        """Cells of a tenth of the radius fill a sphere to 1 %; of a radius they do not."""
+        """Cells that the surface cuts fill a sphere however large they are; steps do not."""
         sphere = "{sphere: {center: [0, 0, 0], radius: 0.1}}"
         text, warnings = self.warnings(sphere, "10 mm")
         self.assertRegex(
             text,
-            r"\n +(0\.99|1\.00)\d* of the volume of its shape; 20 cells along its smallest extent, "
-            "10 along its smallest radius\n",
+            r"\n +(0\.999|1|1\.00)\d* of the volume of its shape; 20 cells along its smallest "
+            "extent, 10 along its smallest radius\n",
         )
+        self.assertRegex(text, r"\n    \d+ cells that curved surfaces cut, the smallest with 0\.0")
         self.assertEqual(warnings, [])
-        self.assertRegex(self.warnings(sphere, "100 mm")[1][0], "they hold 1.912 of its volume$")
+        self.assertEqual(self.warnings(sphere, "100 mm")[1], [])
+        self.assertRegex(
+            self.warnings(sphere, "100 mm", ", surface: stepped")[1][0],
+            "they hold 1.912 of its volume$",
+        )
 
     def test_run_warns(self):
         shape = "{box: {min: [0, 0, 0], max: [40 mm, 20 mm, 20 mm]}}"

@@ -65,6 +65,7 @@ static struct lattice_cells *make(struct lattice_options *o, struct link_materia
         if (!WITH_FIX) c->bits[i] &= 63;
         if (!WITH_LOADS) c->row[i] = 0;
     }
+    if (WITH_SHARES) bodies_cut(c);
     bodies_shake(c, 5, 100);
     return c;
 }
@@ -78,7 +79,7 @@ static void check_features(const struct lattice_features *f, enum lattice_scheme
                 f->fix == WITH_FIX && f->loads == WITH_LOADS);
     assert_true(f->gravity == WITH_GRAVITY && f->kinds == WITH_KINDS && f->rk == WITH_RK &&
                 f->energy == WITH_ENERGY && f->breakage == WITH_BREAK &&
-                f->principal == WITH_PRINCIPAL);
+                f->principal == WITH_PRINCIPAL && f->shares == WITH_SHARES);
 }
 
 static void same(const char *what, int64_t i, const double *device, double x, double y, double z)

@@ -102,6 +102,21 @@ static struct link_material material_of(const struct body *b, int i)
     return b->materials[b->material[i]];
 }
 
+/* A share of the face, and where its middle is. */
+static void cut(struct body_link *l)
+{
+    struct link_constants *k = &l->k;
+    real share = (real)(0.3 + 0.1 * ((7 * l->i + 3 * l->j + l->axis) % 8)), h = k->h;
+    k->kn *= share;
+    k->ks *= share;
+    k->kt *= share;
+    k->kb *= share;
+    k->r_i *= share;
+    k->r_j *= share;
+    k->is_cut = 1;
+    k->offset = v3(0, (real)(0.1 * (l->j % 5 - 2)) * h, (real)(0.15 * (l->i % 4 - 2)) * h);
+}
+
 struct body_link body_link_of(const struct body *b, int i, int face)
 {
     int other = b->neighbour[i][face];
@@ -111,8 +126,15 @@ struct body_link body_link_of(const struct body *b, int i, int face)
             ? link_constants_between(b->set, material_of(b, l.i), material_of(b, l.j), b->h)
             : link_constants_wall(b->set, material_of(b, i), b->h);
     int swap = l.i < 0; /* the wall is the lower one */
-    l.k = (struct link_constants){(real)k.kn, (real)k.ks, (real)k.kt, (real)k.kb,
-        (real)(swap ? k.r_j : k.r_i), (real)(swap ? k.r_i : k.r_j), (real)b->h, (real)k.eta};
+    l.k = (struct link_constants){.kn = (real)k.kn,
+        .ks = (real)k.ks,
+        .kt = (real)k.kt,
+        .kb = (real)k.kb,
+        .r_i = (real)(swap ? k.r_j : k.r_i),
+        .r_j = (real)(swap ? k.r_i : k.r_j),
+        .h = (real)b->h,
+        .eta = (real)k.eta};
+    if (WITH_SHARES && l.i >= 0 && l.j >= 0) cut(&l);
     l.lower = cell_of(b, l.i);
     l.upper = cell_of(b, l.j);
     return l;
@@ -126,16 +148,22 @@ static int has_link(const struct body *b, int i, int face)
 /* Each axis by its own constant, as in a kernel. */
 static struct link_state state_of(const struct body_link *l)
 {
-    if (l->axis == 0) return link_state_of(0, l->lower, l->upper, l->k.h);
-    if (l->axis == 1) return link_state_of(1, l->lower, l->upper, l->k.h);
-    return link_state_of(2, l->lower, l->upper, l->k.h);
+    if (l->axis == 0) return link_state_of(0, l->lower, l->upper, l->k);
+    if (l->axis == 1) return link_state_of(1, l->lower, l->upper, l->k);
+    return link_state_of(2, l->lower, l->upper, l->k);
 }
 
 static struct volume_constants volume_of(const struct body *b, int i)
 {
     struct link_material m = material_of(b, i);
-    return (struct volume_constants){(real)link_constants_lambda(b->set, m),
-        (real)(0.25 / link_constants_shear(m)), (real)(0.5 / b->h), (real)(b->h * b->h * b->h)};
+    struct volume_constants c = {.lambda = (real)link_constants_lambda(b->set, m),
+        .per_4g = (real)(0.25 / link_constants_shear(m)),
+        .per_2h = (real)(0.5 / b->h),
+        .volume = (real)(b->h * b->h * b->h)};
+    c.share = (real)(0.6 + 0.1 * (i % 4));
+    c.missing = 2 * c.share;
+    c.least = (real)(i % 3 ? 0 : 2); /* of some cells it counts */
+    return c;
 }
 
 /* Outward normal of a face, as far as the kinematics turn it. */

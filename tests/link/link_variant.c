@@ -3,7 +3,7 @@
 /* As kernels call it: a constant axis. */
 static struct variant_output along(int axis, const struct variant_input *in)
 {
-    struct link_state s = link_state_of(axis, in->lower, in->upper, in->k.h);
+    struct link_state s = link_state_of(axis, in->lower, in->upper, in->k);
     struct link_force f = link_force_of(s, in->k, in->p_i, in->p_j);
     struct variant_output out = {link_on_lower(axis, s, f), link_on_upper(axis, s, f)};
     return out;

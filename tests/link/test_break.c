@@ -8,7 +8,7 @@ static struct body body;
 static struct break_result decide(const struct body *b, int i, int face, struct break_limits limits)
 {
     struct body_link l = body_link_of(b, i, face);
-    struct link_state s = link_state_of(l.axis, l.lower, l.upper, l.k.h);
+    struct link_state s = link_state_of(l.axis, l.lower, l.upper, l.k);
     return break_of(break_load_of(s, link_force_of(s, l.k, 0, 0)), limits);
 }
 
@@ -27,7 +27,7 @@ static struct break_result pair(
     body.q[1] = quat_turn(body.q[1], body.theta[1]);
     body.q[0] = quat_turn(body.q[0], body.theta[0]);
     struct body_link l = body_link_of(&body, 0, 2 * axis + 1);
-    struct link_state s = link_state_of(axis, l.lower, l.upper, l.k.h);
+    struct link_state s = link_state_of(axis, l.lower, l.upper, l.k);
     *load = break_load_of(s, link_force_of(s, l.k, 0, 0));
     return break_of(*load, limits);
 }
