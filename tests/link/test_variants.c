@@ -43,6 +43,8 @@ static struct variant_input any_link(struct features f)
     in.k.r_i = (real)share;
     in.k.r_j = (real)(2 - share);
     in.k.h = (real)0.7;
+    in.k.is_cut = 0;
+    in.k.offset = v3(0, 0, 0);
     in.k.eta = f.damped ? (real)uniform(0, 0.3) : 0;
     in.p_i = f.volume ? (real)uniform(-1, 1) : 0;
     in.p_j = f.volume ? (real)uniform(-1, 1) : 0;
