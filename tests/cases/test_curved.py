@@ -140,8 +140,8 @@ class Hole(Curved):
         }
         for (cells, surface), value in values.items():
             print(f"r = {cells} cells, {surface}: {value:.3f}")
-        self.below("5 cells", abs(values[5, "cut"] / 3.149 - 1), 0.1)
-        self.below("10 cells", abs(values[10, "cut"] / 3.149 - 1), 0.05)
+        self.below("5 cells", abs(values[5, "cut"] / 3.149 - 1), 0.02)
+        self.below("10 cells", abs(values[10, "cut"] / 3.149 - 1), 0.02)
 
 
 class Rod(Curved):
