@@ -108,7 +108,7 @@ static void warn_of_overlaps(struct sim *s)
     if (all.share > GENERATE_DEEP)
         log_warn(s->log,
             "%lld pairs overlap at the start, elements %lld and %lld by %.3g m, %.3g of the "
-            "smaller radius; they will fly apart",
+            "smaller radius; unless something presses them together, they fly apart",
             (long long)all.n, (long long)all.element[0], (long long)all.element[1], all.depth,
             all.share);
     else if (all.n > 0)

@@ -174,7 +174,7 @@ static int warnings(const struct scene *s, double dt, double speed, const char *
 {
     struct elements_host e = row_of(100, 2.5e-3, 2.5e-3);
     struct scene_errors out = {NULL, 0};
-    limit_warnings(s, &e, speed, dt, &out);
+    limit_warnings(s, NULL, &e, speed, dt, &out);
     int n = out.n;
     if (word) assert_non_null(strstr(out.text[0], word));
     scene_errors_free(&out);
