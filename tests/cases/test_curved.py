@@ -8,7 +8,7 @@ import subprocess
 import numpy
 
 import bodies
-from democles import expect, frames
+from democles import expect, frames, mpi
 
 STEEL = {"density": 7900.0, "young": 210e9, "poisson": 0.3}
 H = 1e-3
@@ -213,9 +213,10 @@ class Rod(Curved):
         self.below("energy at the limit of the step", numpy.ptp(total) / total[0], 0.05)
         self.below("torsion", abs(self.frequency(folder) - 1), 0.015)
         other = subprocess.run(
-            ["mpirun", "-n", "3", "--oversubscribe", bodies.DEMOCLES]
+            mpi.command("-n", "3", bodies.DEMOCLES)
             + "run scene.yaml -o three --force --quiet".split(),
             cwd=self.dir,
+            env=mpi.environment(),
             capture_output=True,
             text=True,
             check=False,
