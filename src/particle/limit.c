@@ -10,7 +10,7 @@
 #include "particle.h"
 
 /* Several elements per work-item: most are then seen at a glance not to be the one. */
-enum { GROUP = 64, GROUPS_MOST = 64, PER_ITEM = 8 };
+enum { GROUP = 64, PER_ITEM = 8 };
 
 struct limit {
     struct program *program;
@@ -56,8 +56,8 @@ struct limit *limit_create(struct sim *s)
     free(options);
     limit->launch = launch_create(limit->program, "step_limit");
     buffers_init(s->dev, limit, buffers);
-    buffer_reserve(&limit->partial, GROUPS_MOST * particles_real(&run->features));
-    buffer_reserve(&limit->partial_gid, GROUPS_MOST * sizeof(int64_t));
+    buffer_reserve(&limit->partial, LIMIT_GROUPS * particles_real(&run->features));
+    buffer_reserve(&limit->partial_gid, LIMIT_GROUPS * sizeof(int64_t));
     write_table(s, limit);
     launch_set_int(limit->launch, "n_material", s->scene->n_material);
     launch_set_int(limit->launch, "kind", run->first->n > 0 ? run->first->material[0] : 0);
@@ -70,11 +70,6 @@ const struct program *limit_program(const struct limit *limit)
     return limit->program;
 }
 
-const struct buffer *limit_table(const struct limit *limit)
-{
-    return &limit->table;
-}
-
 void limit_free(struct limit *limit)
 {
     if (!limit) return;
@@ -84,23 +79,34 @@ void limit_free(struct limit *limit)
     free(limit);
 }
 
-static void bind(struct sim *s, struct limit *limit)
+void limit_bind(struct sim *s, struct launch *launch)
 {
     struct particle_run *run = s->particle;
     const struct particles *p = run->particles;
     const struct wall_contacts *w = run->wall_contacts;
-    launch_bind_all(limit->launch,
-        (const struct launch_binding[]){{"position", &p->field[FIELD_STATE].now},
-            {"motion", &p->field[FIELD_STATE].now}, {"gid", &p->field[FIELD_GID].now},
-            {"row_begin", &run->pairs->now.row_begin}, {"row", &run->pairs->now.row},
-            {"table", &limit->table}, {"partial", &limit->partial},
-            {"partial_gid", &limit->partial_gid}, {0}});
+    launch_bind_all(
+        launch, (const struct launch_binding[]){{"position", &p->field[FIELD_STATE].now},
+                    {"motion", &p->field[FIELD_STATE].now}, {"gid", &p->field[FIELD_GID].now},
+                    {"row_begin", &run->pairs->now.row_begin}, {"row", &run->pairs->now.row},
+                    {"table", &run->limit->table}, {0}});
     if (!w) return;
-    launch_bind_all_if(limit->launch,
-        (const struct launch_binding[]){{"wall_begin", &w->now.begin},
-            {"candidate", &w->now.candidate}, {"primitive", &w->primitive},
-            {"wall_of", &w->wall_of}, {"wall_material", &w->material}, {"pose", &w->pose},
-            {"keep", &w->keep}, {"partner", &w->partner}, {"near", &w->near}, {0}});
+    launch_bind_all_if(
+        launch, (const struct launch_binding[]){{"wall_begin", &w->now.begin},
+                    {"candidate", &w->now.candidate}, {"primitive", &w->primitive},
+                    {"wall_of", &w->wall_of}, {"wall_material", &w->material}, {"pose", &w->pose},
+                    {"keep", &w->keep}, {"partner", &w->partner}, {"near", &w->near}, {0}});
+}
+
+int limit_run_groups(struct sim *s, struct launch *launch)
+{
+    const struct particles *p = s->particle->particles;
+    int64_t wanted = (p->n_owned + GROUP * PER_ITEM - 1) / (GROUP * PER_ITEM);
+    int n = wanted < LIMIT_GROUPS ? (int)wanted : LIMIT_GROUPS;
+    if (n == 0) return 0;
+    launch_set_count(launch, "n_owned", p->n_owned);
+    launch_set_int(launch, "n_group", n);
+    launch_run(launch, n * GROUP);
+    return n;
 }
 
 /* Of this rank. */
@@ -108,11 +114,8 @@ static struct limit_result smallest(struct sim *s, struct limit *limit)
 {
     struct particle_run *run = s->particle;
     struct limit_result best = {HUGE_VAL, -1};
-    int64_t gid[GROUPS_MOST],
-        wanted = (run->particles->n_owned + GROUP * PER_ITEM - 1) / (GROUP * PER_ITEM);
-    int n_group = wanted < GROUPS_MOST ? (int)wanted : GROUPS_MOST;
-    launch_set_int(limit->launch, "n_group", n_group);
-    launch_run(limit->launch, n_group * GROUP);
+    int64_t gid[LIMIT_GROUPS];
+    int n_group = limit_run_groups(s, limit->launch);
     double *dt = reals_read(&limit->partial, run->features.real_is_float, 0, (size_t)n_group);
     buffer_read(&limit->partial_gid, 0, (size_t)n_group * sizeof *gid, gid);
     for (int g = 0; g < n_group; g++) {
@@ -135,8 +138,9 @@ struct limit_result limit_run(struct sim *s, double dt, double share)
             wall_contacts_select(run->wall_contacts, run->particles);
     }
     if (run->particles->n_owned > 0) {
-        bind(s, limit);
-        launch_set_count(limit->launch, "n_owned", run->particles->n_owned);
+        limit_bind(s, limit->launch);
+        launch_bind_buffer(limit->launch, "partial", &limit->partial);
+        launch_bind_buffer(limit->launch, "partial_gid", &limit->partial_gid);
         launch_set_real(limit->launch, "dt", dt);
         launch_set_real(limit->launch, "share", share);
         best = smallest(s, limit);

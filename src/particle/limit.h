@@ -7,8 +7,8 @@
 #include "generate.h"
 #include "scene/scene.h"
 
-struct buffer;
 struct device;
+struct launch;
 struct program;
 struct sim;
 struct walls;
@@ -28,9 +28,13 @@ void limit_free(struct limit *limit);
  * law_limit.h. A step up to the result is safe if it is not below dt. The same on any number of
  * ranks. Collective. */
 struct limit_result limit_run(struct sim *s, double dt, double share);
-/* The program, which has the kernels of overlap.cl too, and its table of materials. */
+/* For the rare kernels over contacts, this one's and those of overlap.cl: the program; contacts of
+ * now, elements and the table of materials as arguments; a run over the owned elements in strides,
+ * which returns how many groups have left a result, at most LIMIT_GROUPS. */
+enum { LIMIT_GROUPS = 64 };
 const struct program *limit_program(const struct limit *limit);
-const struct buffer *limit_table(const struct limit *limit);
+void limit_bind(struct sim *s, struct launch *launch);
+int limit_run_groups(struct sim *s, struct launch *launch);
 /* The share that suits the scene's beds; 1 without friction. */
 double limit_best_share(const struct scene *scene);
 

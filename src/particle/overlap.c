@@ -8,9 +8,6 @@
 #include "particle.h"
 #include "results/report.h"
 
-/* Several elements per work-item, as for the limit. */
-enum { GROUP = 64, GROUPS_MOST = 64, PER_ITEM = 8 };
-
 struct overlap {
     struct launch *look, *passage; /* passage: NULL without walls */
     struct buffer partial, partial_count, partial_id, pose_built;
@@ -40,9 +37,9 @@ struct overlap *overlap_create(struct sim *s)
     o->look = launch_create(program, "overlap");
     o->passage = run->wall_contacts ? launch_create(program, "passage") : NULL;
     buffers_create(s->dev, o, buffers);
-    buffer_reserve(&o->partial, GROUPS_MOST * particles_real(&run->features));
-    buffer_reserve(&o->partial_count, GROUPS_MOST * sizeof(cl_int));
-    buffer_reserve(&o->partial_id, GROUPS_MOST * 2 * sizeof(int64_t));
+    buffer_reserve(&o->partial, LIMIT_GROUPS * particles_real(&run->features));
+    buffer_reserve(&o->partial_count, LIMIT_GROUPS * sizeof(cl_int));
+    buffer_reserve(&o->partial_id, LIMIT_GROUPS * 2 * sizeof(int64_t));
     launch_set_int(o->look, "n_material", s->scene->n_material);
     launch_set_int(o->look, "kind", run->first->n > 0 ? run->first->material[0] : 0);
     launch_set_vector_if(o->look, "period", run->period);
@@ -56,19 +53,6 @@ void overlap_free(struct overlap *overlap)
     launch_free(overlap->look);
     launch_free(overlap->passage);
     free(overlap);
-}
-
-/* Runs the kernel over the owned elements; returns how many groups have left a result. */
-static int run_groups(struct sim *s, struct launch *launch)
-{
-    const struct particles *p = s->particle->particles;
-    int64_t wanted = (p->n_owned + GROUP * PER_ITEM - 1) / (GROUP * PER_ITEM);
-    int n = wanted < GROUPS_MOST ? (int)wanted : GROUPS_MOST;
-    if (n == 0) return 0;
-    launch_set_count(launch, "n_owned", p->n_owned);
-    launch_set_int(launch, "n_group", n);
-    launch_run(launch, n * GROUP);
-    return n;
 }
 
 /* The walls where the lists were built; those that stay are where they are now. */
@@ -92,8 +76,8 @@ void overlap_look_behind(struct sim *s)
     const struct particles *p = run->particles;
     const struct wall_contacts *w = run->wall_contacts;
     if (!w || w->now.n == 0) return;
-    cl_int count[GROUPS_MOST];
-    int64_t id[GROUPS_MOST][2], first[2] = {INT64_MAX, 0}, n = 0;
+    cl_int count[LIMIT_GROUPS];
+    int64_t id[LIMIT_GROUPS][2], first[2] = {INT64_MAX, 0}, n = 0;
     launch_bind_all(
         o->passage, (const struct launch_binding[]){{"position", &p->field[FIELD_STATE].now},
                         {"reference", &p->reference}, {"gid", &p->field[FIELD_GID].now},
@@ -101,7 +85,7 @@ void overlap_look_behind(struct sim *s)
                         {"primitive", &w->primitive}, {"wall_of", &w->wall_of}, {"pose", &w->pose},
                         {"pose_built", built_poses(s, o)}, {"partial_count", &o->partial_count},
                         {"partial_id", &o->partial_id}, {0}});
-    int n_group = run_groups(s, o->passage);
+    int n_group = limit_run_groups(s, o->passage);
     if (n_group == 0) return;
     buffer_read(&o->partial_count, 0, (size_t)n_group * sizeof *count, count);
     buffer_read(&o->partial_id, 0, (size_t)n_group * sizeof *id, id);
@@ -122,21 +106,11 @@ void overlap_look(struct sim *s)
 {
     struct particle_run *run = s->particle;
     struct overlap *o = run->overlap;
-    const struct particles *p = run->particles;
-    const struct wall_contacts *w = run->wall_contacts;
-    int64_t id[GROUPS_MOST][2];
-    launch_bind_all(
-        o->look, (const struct launch_binding[]){{"position", &p->field[FIELD_STATE].now},
-                     {"motion", &p->field[FIELD_STATE].now}, {"gid", &p->field[FIELD_GID].now},
-                     {"row_begin", &run->pairs->now.row_begin}, {"row", &run->pairs->now.row},
-                     {"table", limit_table(run->limit)}, {"partial", &o->partial},
-                     {"partial_id", &o->partial_id}, {0}});
-    if (w)
-        launch_bind_all(o->look, (const struct launch_binding[]){{"wall_begin", &w->now.begin},
-                                     {"candidate", &w->now.candidate}, {"primitive", &w->primitive},
-                                     {"wall_of", &w->wall_of}, {"wall_material", &w->material},
-                                     {"pose", &w->pose}, {0}});
-    int n_group = run_groups(s, o->look);
+    int64_t id[LIMIT_GROUPS][2];
+    limit_bind(s, o->look);
+    launch_bind_buffer(o->look, "partial", &o->partial);
+    launch_bind_buffer(o->look, "partial_id", &o->partial_id);
+    int n_group = limit_run_groups(s, o->look);
     if (n_group == 0) return;
     double *share = reals_read(&o->partial, run->features.real_is_float, 0, (size_t)n_group);
     buffer_read(&o->partial_id, 0, (size_t)n_group * sizeof *id, id);
