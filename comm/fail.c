@@ -44,12 +44,16 @@ static void tell(int exit_code, const char *text)
 
 /* One line in one write, so that mpirun cannot put the output of another rank between its
  * pieces. */
-static void print_line(const char *kind, int rank, const char *text)
+static void print_line(const char *kind, const char *text)
 {
-    char of_rank[32] = "";
-    if (rank > 0) snprintf(of_rank, sizeof of_rank, "rank %d: ", rank);
-    fprintf(stderr, "democles: %s: %s%s\n", kind, of_rank, text);
+    fprintf(stderr, "democles: %s: %s\n", kind, text);
     fflush(stderr);
+}
+
+static void report(int exit_code, const char *text)
+{
+    print_line("error", text);
+    tell(exit_code, text);
 }
 
 _Noreturn void fail_stop(int exit_code, const char *format, ...)
@@ -57,11 +61,11 @@ _Noreturn void fail_stop(int exit_code, const char *format, ...)
     int rank = world_rank();
     char text[TEXT];
     va_list args;
+    int n = rank > 0 ? snprintf(text, sizeof text, "rank %d: ", rank) : 0;
     va_start(args, format);
-    vsnprintf(text, sizeof text, format, args);
+    vsnprintf(text + n, sizeof text - (size_t)n, format, args);
     va_end(args);
-    print_line("error", rank, text);
-    tell(exit_code, text);
+    report(exit_code, text);
     fflush(stdout);
     if (rank >= 0) MPI_Abort(MPI_COMM_WORLD, exit_code);
     /* No exit handlers: device libraries may have work under way on other threads. */
@@ -84,8 +88,7 @@ _Noreturn void fail_stop_together(int exit_code, const char *format, ...)
         va_start(args, format);
         vsnprintf(text, sizeof text, format, args);
         va_end(args);
-        print_line("error", 0, text);
-        tell(exit_code, text);
+        report(exit_code, text);
     }
     fail_leave(exit_code);
 }
@@ -98,7 +101,7 @@ void fail_warn(const char *format, ...)
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
-    print_line("warning", 0, text);
+    print_line("warning", text);
 }
 
 void *fail_alloc(size_t bytes)

@@ -32,8 +32,8 @@ _Noreturn void fail_stop_together(int exit_code, const char *format, ...)
 _Noreturn void fail_leave(int exit_code);
 
 /* Besides printing it, fail_stop and fail_stop_together tell an error to `also` before they leave,
- * on the rank that prints. Up to two of them; NULL takes back what has the context. Not
- * collective. */
+ * on the rank that prints, which may be any: `text` names it if it is not rank 0. Up to two of
+ * them; NULL takes back what has the context. Not collective. */
 void fail_tell(void (*also)(void *context, int exit_code, const char *text), void *context);
 
 /* A warning, printed by rank 0 alone. */

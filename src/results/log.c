@@ -80,18 +80,23 @@ bool log_is_ours(const char *dir)
     return same;
 }
 
-/* Where there is room left: an error may be that there is none. */
+/* In one write, where there is room left (an error may be that there is none). Ranks other than 0
+ * add to the file that rank 0 has made; nobody waits for anybody. */
 static void take_error(void *context, int exit_code, const char *text)
 {
     struct log *log = context;
-    fprintf(log->file, "error: %s\nexit code %d\n", text, exit_code);
-    fflush(log->file);
+    char error[FILES_ERROR_SIZE];
+    int fd = log->file ? fileno(log->file) : -1;
+    if (!log->speaks && files_begins(log->path, LOG_FIRST_LINE))
+        fd = files_append(log->path, error);
+    if (fd >= 0) dprintf(fd, "error: %s\nexit code %d\n", text, exit_code);
 }
 
 void log_attach(struct log *log, const char *dir, bool append, const char *head)
 {
-    if (!log->speaks) return;
     log->path = fail_format("%s/log.txt", dir);
+    fail_tell(take_error, log);
+    if (!log->speaks) return;
     char error[FILES_ERROR_SIZE];
     int fd = append ? files_append(log->path, error) : files_create(log->path, error);
     if (fd < 0) fail_stop(EXIT_IO, "%s", error);
@@ -101,7 +106,6 @@ void log_attach(struct log *log, const char *dir, bool append, const char *head)
     if (log->early) to_file(log, log->early);
     free(log->early);
     log->early = NULL;
-    fail_tell(take_error, log);
 }
 
 void log_free(struct log *log)

@@ -17,9 +17,8 @@ bool log_is_ours(const char *dir);
  * into log.txt too. */
 struct log *log_create(const struct comm *comm, bool quiet);
 /* From now on also to DIR/log.txt, which is made, or for a continued run (`append`) continued; a
- * link of that name is not followed. Errors that end the
- * program go into it, too. `head` is for the file alone, before all else. Failure:
- * EXIT_IO. */
+ * link of that name is not followed. Errors that end the program go into it, too, from whichever
+ * rank they come. `head` is for the file alone, before all else. Failure: EXIT_IO. */
 void log_attach(struct log *log, const char *dir, bool append, const char *head);
 void log_free(struct log *log); /* NULL is fine */
 

@@ -210,7 +210,11 @@ const char *report_json(struct report *report)
 
 bool report_write(struct report *report, const struct comm *comm, const char *dir)
 {
-    if (comm->rank > 0) return true;
+    return comm->rank > 0 || report_save(report, dir);
+}
+
+bool report_save(struct report *report, const char *dir)
+{
     char error[FILES_ERROR_SIZE];
     char *path = fail_format("%s/run.json", dir);
     const char *json = report_json(report);

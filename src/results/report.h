@@ -37,5 +37,7 @@ const char *report_json(struct report *report);
 /* Replaces DIR/run.json by rename. Rank 0 acts; not collective. Returns false, after a warning, if
  * it could not: the caller decides (EXIT_IO). */
 bool report_write(struct report *report, const struct comm *comm, const char *dir);
+/* The same by whichever rank calls it. */
+bool report_save(struct report *report, const char *dir);
 
 #endif

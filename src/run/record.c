@@ -215,7 +215,7 @@ void record_error(void *sim, int exit_code, const char *text)
     report_text(r, "error", text);
     report_integer(r, "exit", exit_code);
     report_text(r, "digest", NULL);
-    report_write(r, s->comm, s->options->dir);
+    report_save(r, s->options->dir);
     report_free(r);
 }
 

@@ -15,7 +15,7 @@ void record_features(struct report *report, const struct feature_row *row, const
 bool record_write(struct sim *s, int exit_code, bool observed);
 
 /* The short record of a run that an error ends, unless it has one already: for fail_tell. Not
- * collective, rank 0 alone. */
+ * collective: written by the rank that has the error. */
 void record_error(void *sim, int exit_code, const char *text);
 
 /* Logs each distinct device with the number of ranks that use it. Collective. */

@@ -104,7 +104,7 @@ struct sim *sim_create(struct scene *scene, struct comm *comm, struct log *log,
     s->dev->profile = options->profile; /* a trace wants the queues' times alone */
     share_cores(s);
     s->output = output_create(s);
-    if (comm->rank == 0) fail_tell(record_error, s);
+    fail_tell(record_error, s);
     s->dev->dump_dir = options->dir;
     log_print(log, "%s", scene->title ? scene->title : scene->name);
     record_print_devices(s);

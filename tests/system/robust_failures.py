@@ -213,6 +213,37 @@ class Environment(Failures):
             self.assertEqual(self.leftovers(job.dir), [])
             self.assertGreaterEqual(self.whole(job.dir), 2)
 
+    def told_by_the_last(self, job, code, says):
+        """What only the last rank meets stands in log.txt and run.json, too."""
+        self.assertEqual(job.end(), code, job.err())
+        self.assertEqual(len(job.errors()), 1, job.err())
+        text = job.errors()[0].removeprefix("democles: error: ")
+        self.assertRegex(text, f"^rank {job.ranks - 1}: .*{says}")
+        log = pathlib.Path(job.dir, "log.txt").read_text()
+        self.assertTrue(log.startswith("democles "), log)
+        self.assertIn(f"error: {text}\nexit code {code}\n", log)
+        record = parallel_runs.Run(job.dir, code, "").record()
+        self.assertEqual((record["error"], record["exit"]), (text, code))
+        self.assertEqual(self.leftovers(job.dir), [])
+
+    def test_error_of_another_rank(self):
+        """In the set-up, where its kernels are missing; later, where its files may not grow."""
+        scene = self.put(robust_jobs.bed(frame_every=50))
+        path = os.path.join(self.dir, "last")
+        with open(path, "w") as file:
+            file.write(
+                f'#!/bin/sh\n[ "${parallel_runs.mpi.rank_variable()}" = 2 ] &&'
+                f' export DEMOCLES_KERNELS=/nowhere\nexec "{parallel_runs.DEMOCLES}" "$@"\n'
+            )
+        os.chmod(path, 0o755)
+        job = self.job(scene, 3, name="kernels", program=path)
+        self.told_by_the_last(job, 4, "DEMOCLES_KERNELS: cannot read")
+
+        job = self.job(scene, 2, name="files")
+        job.wait_frames(1)
+        resource.prlimit(job.pids()[1], resource.RLIMIT_FSIZE, (2000, 2000))
+        self.told_by_the_last(job, 6, "cannot write .*File too large")
+
     def test_full_disk(self):
         """Where a small file system may be mounted."""
         disk, scene = os.path.join(self.dir, "disk"), self.put(robust_jobs.bed(frame_every=50))

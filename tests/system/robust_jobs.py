@@ -36,12 +36,13 @@ def bed(steps=10**7, dt=2e-5, frame_every=200, **more):
 class Job:
     """A run under way, in a process group of its own."""
 
-    def __init__(self, folder, scene, ranks, *args, name="out", **more):
+    def __init__(self, folder, scene, ranks, *args, name="out", program=None, **more):
         self.dir, self.ranks = os.path.join(folder, name), ranks
         self.log = os.path.join(folder, "stderr.txt")
         shutil.rmtree(self.dir, True)
         with open(self.log, "w") as err:
             words = parallel_runs.command(ranks, "run", scene, "-o", self.dir, "--quiet", *args)
+            words[words.index(parallel_runs.DEMOCLES)] = program or parallel_runs.DEMOCLES
             self.process = subprocess.Popen(
                 words,
                 cwd=folder,
