@@ -19,7 +19,9 @@
  * mpi_yield_when_idle: a rank's OpenCL workers often share its core (mpirun binds to one), so a
  * rank that waits has to let them run. eager_limit: a message above it takes several looks of both
  * ranks, and they look rarely while their device computes on the same cores; ghosts of one
- * neighbour are some 100 KB. (vader is the shared-memory transport of Open MPI 4, sm that of 5.) */
+ * neighbour are some 100 KB. (vader is the shared-memory transport of Open MPI 4, sm that of 5.)
+ * ess_singleton_isolated: without mpirun MPI_Init would start a daemon for processes that the rank
+ * may start later (this one starts none), which takes longer than all the rest of it. */
 static void environment(void)
 {
     setenv("OMPI_MCA_io", "^ompio", 0);
@@ -27,6 +29,7 @@ static void environment(void)
     setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0);
     setenv("OMPI_MCA_btl_vader_eager_limit", "262144", 0);
     setenv("OMPI_MCA_btl_sm_eager_limit", "262144", 0);
+    setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
 }
 
 static void warn_of_ompio(void)
@@ -156,7 +159,11 @@ void comm_barrier(const struct comm *comm)
 
 void comm_node_barrier(const struct comm *comm)
 {
-    check_mpi(MPI_Barrier(comm->node));
+    const struct timespec nap = {0, 1000000}; /* s, ns */
+    MPI_Request request;
+    int done = 0;
+    check_mpi(MPI_Ibarrier(comm->node, &request));
+    while (check_mpi(MPI_Test(&request, &done, MPI_STATUS_IGNORE)), !done) nanosleep(&nap, NULL);
 }
 
 void comm_node_or(const struct comm *comm, void *bits, size_t bytes)

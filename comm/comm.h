@@ -36,6 +36,7 @@ void comm_gather(const struct comm *comm, const void *mine,
 /* sum over lower ranks; 0 on rank 0 */
 int64_t comm_exscan_i64(const struct comm *comm, int64_t value);
 void comm_barrier(const struct comm *comm);
+/* of the ranks of this node, which sleep meanwhile: one of them works for seconds on their cores */
 void comm_node_barrier(const struct comm *comm);
 /* bit-or over the ranks of this node, in place */
 void comm_node_or(const struct comm *comm, void *bits, size_t bytes);

@@ -126,10 +126,29 @@ static char *path_of(const struct device *dev, uint64_t key)
     return path;
 }
 
-int kernel_cache_lock(const struct device *dev, uint64_t key)
+/* Whether processes share what they compile, and need a lock for it. */
+static bool is_shared(const struct device *dev)
 {
     const char *cache = getenv("POCL_KERNEL_CACHE");
-    if (!dev->is_pocl || (cache && !strcmp(cache, "0"))) return -1;
+    return dev->is_pocl && !(cache && !strcmp(cache, "0"));
+}
+
+bool kernel_cache_has(const struct device *dev, uint64_t key)
+{
+    if (!is_shared(dev)) return false;
+    char mark[MARK_SIZE] = "", *path = path_of(dev, key);
+    int file = open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+    if (file >= 0) {
+        read_mark(file, mark);
+        close(file);
+    }
+    free(path);
+    return strcmp(mark, compiled) == 0;
+}
+
+int kernel_cache_lock(const struct device *dev, uint64_t key)
+{
+    if (!is_shared(dev)) return -1;
     char mark[MARK_SIZE], *path = path_of(dev, key);
     int lock = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
     bool wanted = lock >= 0;

@@ -18,6 +18,9 @@ uint64_t kernel_cache_key(const char *options, const char *source);
 /* The same for a launch of a kernel: pocl compiles for a size of groups, and for few or many. */
 uint64_t kernel_cache_launch_key(uint64_t program, const char *kernel, size_t local, size_t global);
 
+/* Whether a process has compiled that key before: then nobody needs a lock. */
+bool kernel_cache_has(const struct device *dev, uint64_t key);
+
 /* Locks what has that key. Returns what unlock takes; -1 if there is nothing to lock: it has been
  * compiled already, or the file cannot be made or locked, or the lock is held for a minute, or a
  * signal asks the run to stop, which is no error. A wait of seconds for another job is told, with

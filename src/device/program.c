@@ -46,13 +46,24 @@ static void build(struct program *program, const char *source)
     cl_int code;
     program->id = clCreateProgramWithSource(program->dev->context, 1, &source, NULL, &code);
     check_cl_as(code, "clCreateProgramWithSource");
-    program->cache_key = kernel_cache_key(program->options, source);
     signals_hold();
     int lock = kernel_cache_lock(program->dev, program->cache_key);
     code = clBuildProgram(program->id, 1, &program->dev->id, program->options, NULL, NULL);
     if (code != CL_SUCCESS) build_failed(program, source, code);
     kernel_cache_unlock(lock);
     signals_pass();
+}
+
+/* The first rank of a node compiles, the others find what it has left in the driver's cache; where
+ * it is there already nobody waits. */
+static void build_in_turns(struct program *program, const struct comm *comm, const char *source)
+{
+    uint8_t is_new = !kernel_cache_has(program->dev, program->cache_key);
+    if (comm) comm_node_or(comm, &is_new, sizeof is_new);
+    bool first = !comm || comm->node_rank == 0 || !is_new;
+    if (first) build(program, source);
+    if (comm && is_new) comm_node_barrier(comm);
+    if (!first) build(program, source);
 }
 
 struct program *program_build(struct device *dev, const struct comm *comm, const char *name,
@@ -68,9 +79,8 @@ struct program *program_build(struct device *dev, const struct comm *comm, const
     program->real_is_float = strstr(options, "-DREAL_IS_FLOAT=1");
     program->position_is_float = strstr(options, "-DPOSITION_IS_FLOAT=1");
 
-    if (!comm || comm->node_rank == 0) build(program, source);
-    if (comm) comm_node_barrier(comm);
-    if (comm && comm->node_rank != 0) build(program, source);
+    program->cache_key = kernel_cache_key(program->options, source);
+    build_in_turns(program, comm, source);
     free(source);
     return program;
 }
