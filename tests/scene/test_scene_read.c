@@ -264,7 +264,8 @@ static void reads_back(struct fixture *f, const char *title)
     scene_free(scene);
 }
 
-/* Every code point in a title, by its escape and as it is where YAML takes it. */
+/* Code points in a title, by their escape and as they are where YAML takes them: each one of the
+ * first two planes, and both ends of the others, which have nothing else of their own. */
 static void characters(void **state)
 {
     enum { BATCH = 2048 };
@@ -272,6 +273,8 @@ static void characters(void **state)
     char *escaped = fail_alloc(12 * BATCH + 1000), *raw = fail_alloc(4 * BATCH + 1000),
          *title = fail_alloc(4 * BATCH + 2);
     for (unsigned first = 0; first < 0x110000; first += BATCH) {
+        unsigned in_plane = first & 0xffff;
+        if (first >= 0x20000 && in_plane != 0 && in_plane != 0x10000 - BATCH) continue;
         size_t e = (size_t)sprintf(escaped, "title: \"x"), r = (size_t)sprintf(raw, "title: 'x"),
                t = (size_t)sprintf(title, "x");
         for (unsigned c = first; c < first + BATCH; c++) {
