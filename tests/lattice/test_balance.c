@@ -210,6 +210,10 @@ static void leapfrog(void **state)
     (void)state;
     closes("leapfrog, damped", (struct lattice_options){.scheme = LATTICE_LEAPFROG, .turn = true},
         1e-4, 20, 2e-4, 2);
+}
+static void small_rotations(void **state)
+{
+    (void)state;
     closes("leapfrog, small rotations", (struct lattice_options){.scheme = LATTICE_LEAPFROG}, 1e-4,
         20, 2e-4, 2);
 }
@@ -248,7 +252,8 @@ int main(int argc, char **argv)
 {
     const struct CMUnitTest some[] = {cmocka_unit_test(pulled_cell), cmocka_unit_test(led_cell),
         cmocka_unit_test(dashpot), cmocka_unit_test(leapfrog)};
-    const struct CMUnitTest more[] = {cmocka_unit_test(undamped), cmocka_unit_test(rk4),
-        cmocka_unit_test(rkn4), cmocka_unit_test(pefrl), cmocka_unit_test(vefrl)};
+    const struct CMUnitTest more[] = {cmocka_unit_test(small_rotations), cmocka_unit_test(undamped),
+        cmocka_unit_test(rk4), cmocka_unit_test(rkn4), cmocka_unit_test(pefrl),
+        cmocka_unit_test(vefrl)};
     return argc > 1 && strcmp(argv[1], "schemes") == 0 ? DEVICE_TESTS(more) : DEVICE_TESTS(some);
 }

@@ -228,10 +228,13 @@ static void run(enum lattice_scheme scheme, bool one_lane, int axis, int length)
     bodies_free(cells);
 }
 
+/* The layout of `some`: by groups, as GPUs have it, or all cells of a batch by one work-item. */
+enum { GROUPS = WITH_SHARES };
+
 static void leapfrog(void **state)
 {
     (void)state;
-    run(LATTICE_LEAPFROG, true, 0, 64);
+    run(LATTICE_LEAPFROG, !GROUPS, 0, 64);
     if (some) return;
     run(LATTICE_LEAPFROG, true, 1, 24);
     run(LATTICE_LEAPFROG, false, 2, 32);
@@ -239,13 +242,13 @@ static void leapfrog(void **state)
 static void pefrl(void **state)
 {
     (void)state;
-    run(LATTICE_PEFRL, false, 0, 32);
+    run(LATTICE_PEFRL, some && !GROUPS, 0, some ? 64 : 32);
     if (!some) run(LATTICE_PEFRL, true, 2, 16);
 }
 static void vefrl(void **state)
 {
     (void)state;
-    run(LATTICE_VEFRL, true, 0, 16);
+    run(LATTICE_VEFRL, !some || !GROUPS, 0, some ? 64 : 16);
 }
 static void rk4(void **state)
 {
@@ -259,7 +262,7 @@ static void rkn4(void **state)
     run(LATTICE_RKN4, true, 2, 16);
 }
 
-/* Argument: some or all. */
+/* Argument: some, all schemes in one layout, which is one compilation; or all. */
 int main(int argc, char **argv)
 {
     const struct CMUnitTest split[] = {

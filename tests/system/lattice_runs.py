@@ -120,9 +120,11 @@ class Lattice(parallel_runs.Case):
             ("leapfrog", block("leapfrog")),
             ("pefrl", block("pefrl")),
         ):
+            if some() and name != "leapfrog":
+                continue
             all_ranks = (1, 3) if name == "pefrl" or some() else (1, 2, 3, 4, 8)
             for precision, ranks in (("double", all_ranks), ("single", (1, 3))):
-                if some() and precision != ("single" if name == "pefrl" else "double"):
+                if some() and precision == "single":
                     continue
                 alone = None
                 for n in ranks:
@@ -149,7 +151,7 @@ class Lattice(parallel_runs.Case):
             ("single", "pefrl", (1, 2)),
         )
         for precision, scheme, ranks in (
-            (("double", "leapfrog", (1, 3)), ("single", "pefrl", (1, 2))) if some() else pairs
+            (("single", "pefrl", (1, 3)),) if some() else pairs
         ):
             alone, scene = None, torn(principal=scheme == "pefrl")
             scene["time"] = {**scene["time"], "scheme": scheme, "step": 1.5e-7}
@@ -269,6 +271,8 @@ class Lattice(parallel_runs.Case):
         bits on any number of ranks."""
         fields = ["von_mises", "rotation", "stress"]
         for rotation, turn in (("finite", "wxyz"), ("small", "xyz")):
+            if some() and rotation == "small":
+                continue
             scene, alone = block("leapfrog"), None
             scene.update(
                 lattice={"rotation": rotation}, output={"every": 0, "fields": [*fields, "id"]}
@@ -316,14 +320,11 @@ class Lattice(parallel_runs.Case):
         self.assertIn("are not numbers", run.err)
         self.assertIn("of the critical one", run.err)
         over["measure"] = [{"name": "energy", "every": 2e-5, "energy": "all"}]
-        for ranks in (1, 3):
-            run = self.run_scene(self.put(over), ranks, "--steps", "2000")
-            self.assertEqual(run.code, 5, run.err)
-            self.assertRegex(
-                run.err, r"step \d+, t = \S+ s: the energy is not a number, or too large"
-            )
-            self.assertNotIn("nan", run.series()["energy.csv"])
-            self.assertEqual(run.record()["exit"], 5)
+        run = self.run_scene(self.put(over), 3, "--steps", "2000")
+        self.assertEqual(run.code, 5, run.err)
+        self.assertRegex(run.err, r"step \d+, t = \S+ s: the energy is not a number, or too large")
+        self.assertNotIn("nan", run.series()["energy.csv"])
+        self.assertEqual(run.record()["exit"], 5)
 
 
 if __name__ == "__main__":

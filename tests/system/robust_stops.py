@@ -32,25 +32,20 @@ class Asked(robust_jobs.Case):
 
     def test_signal_at_one_rank(self):
         for ranks, rank, number in (
-            (1, 0, signal.SIGTERM),
+            (1, 0, signal.SIGINT),
             (3, 2, signal.SIGTERM),
             (3, 0, signal.SIGUSR1),
-            (3, 1, signal.SIGINT),
         ):
             with self.subTest(ranks=ranks, rank=rank, signal=number):
                 self.stopped(ranks, lambda job: job.signal(number, rank))
 
     def test_stop_file(self):
-        for ranks in (1, 3):
-            with self.subTest(ranks=ranks):
-                self.stopped(ranks, lambda job: open(os.path.join(job.dir, "stop"), "w").close())
+        self.stopped(3, lambda job: open(os.path.join(job.dir, "stop"), "w").close())
 
     def test_max_time(self):
-        for ranks in (1, 3):
-            with self.subTest(ranks=ranks):
-                began = time.monotonic()
-                self.stopped(ranks, lambda job: None, "--max-time", "3s")
-                self.assertGreater(time.monotonic() - began, 3)
+        began = time.monotonic()
+        self.stopped(3, lambda job: None, "--max-time", "3s")
+        self.assertGreater(time.monotonic() - began, 3)
 
 
 class Killed(robust_jobs.Case):
@@ -71,14 +66,12 @@ class Killed(robust_jobs.Case):
             self.assertIn(name, os.listdir(job.dir))
 
     def test_one_rank_is_killed(self):
-        for ranks, rank, delay in ((1, 0, 0.0), (3, 1, 0.013), (3, 0, 0.05)):
+        for ranks, rank, delay in ((1, 0, 0.0), (3, 1, 0.013)):
             with self.subTest(ranks=ranks, rank=rank):
                 self.ended(ranks, lambda job: job.signal(signal.SIGKILL, rank), delay)
 
     def test_mpirun_is_terminated(self):
-        for delay in (0.0, 0.07):
-            with self.subTest(delay=delay):
-                self.ended(3, lambda job: job.process.terminate(), delay)
+        self.ended(3, lambda job: job.process.terminate(), 0.07)
 
 
 if __name__ == "__main__":
