@@ -10,7 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
 #include <unistd.h>
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
@@ -27,8 +26,11 @@ static inline void fuzz_expect(int holds, const char *what)
 static inline const char *fuzz_file(const uint8_t *data, size_t size)
 {
     static int descriptor = -1;
-    static char path[64];
-    if (descriptor < 0) descriptor = memfd_create("fuzz", 0);
+    static char path[64], name[] = "/dev/shm/democles_fuzz_XXXXXX";
+    if (descriptor < 0) {
+        descriptor = mkstemp(name);
+        unlink(name); /* its descriptor is all that is left of it */
+    }
     snprintf(path, sizeof path, "/proc/self/fd/%d", descriptor);
     fuzz_expect(ftruncate(descriptor, 0) == 0 && pwrite(descriptor, data, size, 0) == (ssize_t)size,
         "a file in memory can be written");
