@@ -78,6 +78,7 @@ static int print(const struct comm *comm, const struct options *options)
 
 int main(int argc, char **argv)
 {
+    files_hold_standard();
     snapshot_serve(argc, argv);
     signals_hold(); /* from the threads of MPI and OpenCL */
     struct comm *comm = comm_create(&argc, &argv);

@@ -19,6 +19,10 @@ FILE *files_input(const char *path);
 /* Whether an ordinary file, not a link, is there and begins with `text`. */
 bool files_begins(const char *path, const char *text);
 
+/* Opens /dev/null where the standard input, output or error is closed. Else the next file or pipe
+ * that a library opens would have their number, and get what is printed. First of all in main. */
+void files_hold_standard(void);
+
 /* Whether nobody reads any more what is written to the standard output: a pipe whose other end is
  * closed, as by `| head -1`, or a terminal that has gone. */
 bool files_reader_is_gone(void);

@@ -174,7 +174,7 @@ def main():
             counts[way, code] += 1
             why = (
                 (code not in GOOD["run" if way == "run" else "check"] and "exit code")
-                or (code != 0 and not text.strip() and "no message")
+                or (code not in (0, 75) and not text.strip() and "no message")
                 or next((word for word in BAD if word in text), None)
                 or folder.lost(data)
             )

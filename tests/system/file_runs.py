@@ -6,6 +6,7 @@ import os
 import shutil
 import signal
 import subprocess
+import time
 
 import cli
 
@@ -283,6 +284,32 @@ class Piped(Files):
         ):
             for lines in (0, 1):
                 self.assertEqual(self.pipe(*args, lines=lines), (0, ""), args)
+
+    def test_closed(self):
+        """Without standard input, output and error no file or pipe of the program takes their
+        place: what is printed would go there."""
+        run = subprocess.Popen(
+            [
+                cli.DEMOCLES,
+                "run",
+                "s.yaml",
+                "-o",
+                "d",
+                "--set",
+                "time.end=1e5",
+                "--set",
+                "output.every=1e5",
+            ],
+            cwd=self.dir,
+            preexec_fn=lambda: os.closerange(0, 3),
+        )
+        while not os.path.exists(os.path.join(self.dir, "d/log.txt")):
+            self.assertIsNone(run.poll())
+            time.sleep(0.01)
+        held = [os.readlink(f"/proc/{run.pid}/fd/{number}") for number in range(3)]
+        run.send_signal(signal.SIGTERM)
+        self.assertEqual((run.wait(60), held), (75, ["/dev/null"] * 3))
+        self.assertIn("stopped on request", self.text("d/log.txt"))
 
     def test_full(self):
         """A disk that is full is another matter: what was asked for is not there."""
