@@ -150,9 +150,7 @@ class Lattice(parallel_runs.Case):
             ("double", "rk4", (1, 3)),
             ("single", "pefrl", (1, 2)),
         )
-        for precision, scheme, ranks in (
-            (("single", "pefrl", (1, 3)),) if some() else pairs
-        ):
+        for precision, scheme, ranks in (("single", "pefrl", (1, 3)),) if some() else pairs:
             alone, scene = None, torn(principal=scheme == "pefrl")
             scene["time"] = {**scene["time"], "scheme": scheme, "step": 1.5e-7}
             for n in ranks:
