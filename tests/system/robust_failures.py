@@ -188,22 +188,24 @@ class Environment(Failures):
         )
         self.assertRegex(run.err, r"gather\.cl:\d+:\d+: unknown type name 'this'")
 
-    def test_file_size_limit(self):
-        """As a disk that fills up while the run is under way: what was written before stays."""
+    def bed_with_kernels(self):
+        """A scene whose kernels are there: pocl writes files too, where it compiles them."""
         scene = self.put(robust_jobs.bed(frame_every=50))
-        self.good_run(
-            scene, 3, "--steps", "1500", name="before"
-        )  # pocl writes kernels too, when they run for the first time
-        job = self.job(scene, 3, name="out")
+        self.good_run(scene, 3, "--steps", "1500", name="before")
+        return scene
+
+    def test_file_size_limit(self):
+        """As a disk that fills up while the run is under way: what was written before stays.
+        Ranks that write a frame together may find it together."""
+        job = self.job(self.bed_with_kernels(), 3)
         job.wait_frames(2)
         limit = os.path.getsize(job.frames()[0]) // 2
         for pid in job.pids().values():
             resource.prlimit(pid, resource.RLIMIT_FSIZE, (limit, limit))
         self.assertEqual(job.end(), 6, job.err())
-        self.assertEqual(len(job.errors()), 1, job.err())
-        self.assertRegex(
-            job.errors()[0], r"(frame_\d+\.hdf|energy\.csv|log\.txt).*: File too large"
-        )
+        self.assertGreater(len(job.errors()), 0, job.err())
+        for error in job.errors():
+            self.assertRegex(error, r"(frame_\d+\.hdf|energy\.csv|log\.txt).*: File too large")
         self.assertEqual(self.leftovers(job.dir), [])
         self.assertGreaterEqual(self.whole(job.dir), 2)
 
@@ -222,8 +224,7 @@ class Environment(Failures):
 
     def test_error_of_another_rank(self):
         """In the set-up, where its kernels are missing; later, where its files may not grow."""
-        scene = self.put(robust_jobs.bed(frame_every=50))
-        path = os.path.join(self.dir, "last")
+        scene, path = self.bed_with_kernels(), os.path.join(self.dir, "last")
         with open(path, "w") as file:
             file.write(
                 f'#!/bin/sh\n[ "${parallel_runs.mpi.rank_variable()}" = 2 ] &&'
