@@ -33,8 +33,9 @@ struct force_test {
     void (*move)(struct force_run *);
 };
 
-/* All steps, once by one work-item per batch and once by many. Returns how many of both failed. */
-int force_main(const struct force_test *test);
+/* All steps, once by one work-item per batch and once by many; argument: one or many for one of
+ * them. Returns how many of both failed. */
+int force_main(const struct force_test *test, int argc, char **argv);
 
 /* Random numbers of this run: in [-1, 1), in [low, high), and a rotation by rows. */
 double force_any(void);

@@ -201,9 +201,9 @@ static void move(struct force_run *f)
     force_move(((struct test *)f)->element, N_ELEMENT);
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
     static const struct force_test test = {
         "pair_force.cl", "pair_force", FEATURES_PAIR, sizeof(struct test), 20, set, check, move};
-    return force_main(&test);
+    return force_main(&test, argc, argv);
 }

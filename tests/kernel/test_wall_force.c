@@ -278,9 +278,9 @@ static void move(struct force_run *f)
         for (int a = 0; a < 3; a++) t->pose[w][9 + a] += (preal)STEP * t->pose[w][12 + a];
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
     static const struct force_test test = {
         "wall_force.cl", "wall_force", FEATURES_WALL, sizeof(struct test), 4, set, check, move};
-    return force_main(&test);
+    return force_main(&test, argc, argv);
 }
