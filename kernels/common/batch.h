@@ -3,9 +3,10 @@
  * On a GPU a batch has one work-item per contact, and phases that hand over through local memory
  * are kept apart by BATCH_BARRIER. With pocl on a CPU (WITH_ONE_LANE) one work-item does the whole
  * batch, in plain loops without barriers. BATCH_VECTOR before a loop says that its rounds are
- * independent and asks for BATCH_WIDTH lanes: two to four of the machine's vectors side by side,
- * because a contact law is one long chain of operations, and a processor that waits for the end of
- * one chain has room for others. The driver's own loop over work-items cannot be told so. (Pointers
+ * independent and asks for BATCH_WIDTH lanes: two of the machine's vectors of 32 bytes side by
+ * side, because a contact law is one long chain of operations, and a processor that waits for the
+ * end of one chain has room for others; four run out of registers (a tenth more time for pairs, a
+ * fifth for walls). The driver's own loop over work-items cannot be told so. (Pointers
  * that a kernel writes through are `restrict`: where a table is looked up by number, the compiler
  * has no other way to see it.) Measured on the settled bed, pocl 3.1, AMD Zen 5, ns per pair and
  * step: 17 there, 12 here in double; 11.5 and 8 in single precision. Same bits. */
@@ -15,10 +16,14 @@
 #ifndef BATCH
 #define BATCH 64
 #endif
-#ifndef BATCH_WIDTH
-#define BATCH_WIDTH 16 /* lanes that BATCH_VECTOR asks for */
-#endif
 #ifdef __OPENCL_VERSION__
+#ifndef BATCH_WIDTH /* lanes that BATCH_VECTOR asks for */
+#if REAL_IS_FLOAT
+#define BATCH_WIDTH 16
+#else
+#define BATCH_WIDTH 8
+#endif
+#endif
 #if WITH_ONE_LANE
 #define BATCH_LANES 1
 #define BATCH_BARRIER

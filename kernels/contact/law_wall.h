@@ -107,6 +107,16 @@ LAW struct wall_closest wall_one_sided(preal distance, pvec3 n)
     return k;
 }
 
+/* `a` where `is`, else `b`: by selects, where a branch would keep a loop over contacts scalar. */
+LAW struct wall_closest wall_choose(int is, struct wall_closest a, struct wall_closest b)
+{
+    a.D = p3(is ? a.D.x : b.D.x, is ? a.D.y : b.D.y, is ? a.D.z : b.D.z);
+    a.n = p3(is ? a.n.x : b.n.x, is ? a.n.y : b.n.y, is ? a.n.z : b.n.z);
+    a.distance = is ? a.distance : b.distance;
+    a.feature = is ? a.feature : b.feature;
+    return a;
+}
+
 /* Signed distance (x - p).m. */
 LAW struct wall_closest wall_closest_plane(struct wall_primitive w, pvec3 x)
 {
@@ -134,18 +144,20 @@ LAW struct wall_closest wall_closest_cylinder(struct wall_primitive w, pvec3 x)
     preal z = p3_dot(q, w.b);
     pvec3 radial = p3_fma(-z, w.b, q);
     preal rho = p_sqrt(p3_dot(radial, radial));
-    preal scale = (preal)1 / (rho > 0 ? rho : (preal)1);
-    pvec3 e = rho > 0 ? p3_scale(scale, radial) : w.c;
+    int apart = rho > 0;
+    preal scale = (preal)1 / (apart ? rho : (preal)1);
+    pvec3 e = p3(apart ? scale * radial.x : w.c.x, apart ? scale * radial.y : w.c.y,
+        apart ? scale * radial.z : w.c.z);
     int last = z + z > w.s;
     preal beyond = last ? z - w.s : -z, out = rho - w.r;
     pvec3 end = p3_scale(last ? (preal)1 : (preal)-1, w.b);
-    if (w.kind == WALL_ROD && !(out > 0 && beyond > 0)) {
-        if (out >= beyond) return wall_one_sided(out, p3_scale((preal)-1, e));
-        return wall_one_sided(beyond, p3_scale((preal)-1, end));
-    }
     int past = beyond > 0;
     pvec3 D = p3_fma(-out, e, p3_scale(past ? -beyond : (preal)0, end));
-    return wall_two_sided(D, e, past ? 1 + last : 0);
+    struct wall_closest rim = wall_two_sided(D, e, past ? 1 + last : 0);
+    struct wall_closest side = wall_one_sided(out, p3_scale((preal)-1, e));
+    struct wall_closest flat = wall_one_sided(beyond, p3_scale((preal)-1, end));
+    return wall_choose(
+        w.kind == WALL_ROD && !(out > 0 && past), wall_choose(out >= beyond, side, flat), rim);
 }
 
 /* Closest point a + v ab + w ac by Voronoi regions (Ericson, Real-Time Collision Detection, 2005,

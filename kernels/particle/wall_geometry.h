@@ -15,20 +15,35 @@ struct wall_geometry {
     vec3 kick;                     /* what it gains until t^{n+1} [m/s] */
 };
 
+/* wall_closest without branches, which would keep the loop over contacts scalar: all kinds that the
+ * program knows are computed, and that of the wall is taken; same bits. plane: the answer where it
+ * is a plane. */
+LAW struct wall_closest wall_closest_lane(
+    struct wall_primitive w, pvec3 x, struct wall_closest plane)
+{
+    struct wall_closest k = plane;
+    if (WITH_RECTANGLE) k = wall_choose(w.kind == WALL_RECTANGLE, wall_closest_rectangle(w, x), k);
+    if (WITH_CYLINDER)
+        k = wall_choose(w.kind == WALL_PIPE || w.kind == WALL_ROD, wall_closest_cylinder(w, x), k);
+    if (WITH_TRIANGLE) k = wall_choose(w.kind == WALL_TRIANGLE, wall_closest_triangle(w, x), k);
+    return k;
+}
+
+LAW struct wall_closest wall_closest_end(struct wall_primitive w, pvec3 x)
+{
+    return wall_closest_lane(
+        w, x, WITH_PLANE ? wall_closest_plane(w, x) : wall_one_sided(WALL_FAR, p3(0, 0, 1)));
+}
+
 /* Closest point in the middle of the step, when the centre was at x - u dt/2. The distance to a
  * plane is linear in the way: that is cheaper than a second look at it, and two equal chains of
  * arithmetic would tempt LLVM into packing them, which keeps the loop over work-items scalar. */
 LAW struct wall_closest wall_closest_half(
     struct wall_primitive w, struct wall_closest now, pvec3 x, pvec3 way)
 {
-    struct wall_closest half_way = now;
-    if (WITH_RECTANGLE || WITH_CYLINDER || WITH_TRIANGLE)
-        half_way = wall_closest(w, p3_sub(x, way));
-    if (WITH_PLANE && w.kind == WALL_PLANE) {
-        half_way.n = now.n;
-        half_way.distance = now.distance + p3_dot(now.n, way);
-    }
-    return half_way;
+    struct wall_closest plane = now;
+    plane.distance = now.distance + p3_dot(now.n, way);
+    return wall_closest_lane(w, p3_sub(x, way), plane);
 }
 
 LAW struct wall_geometry wall_geometry_of(
@@ -47,7 +62,7 @@ LAW struct wall_geometry wall_geometry_of(
 /* A wall at rest. x: centre at t^{n+1}; v: its velocity at the half step. */
 LAW struct wall_geometry wall_geometry(struct wall_primitive w, pvec3 x, vec3 v, real dt)
 {
-    struct wall_closest now = wall_closest(w, x);
+    struct wall_closest now = wall_closest_end(w, x);
     return wall_geometry_of(now,
         wall_closest_half(w, now, x, p3_scale((preal)0.5 * (preal)dt, p3_of_v3(v))), v3(0, 0, 0));
 }
@@ -92,7 +107,7 @@ LAW struct wall_geometry wall_geometry_moving(
     vec3 arm = v3_of_p3(p3_fma(-half_dt, p3_of_v3(v), p3_sub(x, p3(pose[18], pose[19], pose[20]))));
     /* seen from the wall */
     vec3 rate = v3_sub(v, wall_velocity(velocity, spin, arm));
-    struct wall_closest now = wall_closest(w, q);
+    struct wall_closest now = wall_closest_end(w, q);
     struct wall_closest half_way =
         wall_closest_half(w, now, q, wall_turn_back(f, p3_scale(half_dt, p3_of_v3(rate))));
     now.n = wall_turn(f, now.n);

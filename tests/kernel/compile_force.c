@@ -18,7 +18,8 @@ static void set_feature(struct features *f, const char *name)
         const char *name;
         bool *value;
     } table[] = {{"spin", &f->spin}, {"sizes", &f->sizes}, {"materials", &f->materials},
-        {"periodic", &f->periodic[0]}, {"plane", &f->plane}, {"cylinder", &f->cylinder},
+        {"periodic", &f->periodic[0]}, {"plane", &f->plane}, {"rectangle", &f->rectangle},
+        {"cylinder", &f->cylinder}, {"triangle", &f->triangle}, {"moving", &f->moving},
         {"linear", &f->pair.linear}, {"hertz", &f->pair.hertz}, {"tangential", &f->pair.tangential},
         {"damping", &f->pair.tangential_damping}, {"epsd", &f->pair.rolling_epsd},
         {"cdt", &f->pair.rolling_cdt}, {"binding", &f->pair.binding}, {"jkr", &f->pair.jkr}};

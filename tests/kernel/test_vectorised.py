@@ -25,6 +25,10 @@ CASES = [
         ["spin", "hertz", "tangential", "damping", "epsd", "binding", "sizes"],
     ),
     ("wall_force", "double", EQUAL + ["plane"]),
+    ("wall_force", "double", EQUAL + ["binding", "rectangle", "triangle"]),
+    ("wall_force", "single", EQUAL + ["plane", "rectangle"]),
+    ("wall_force", "single", EQUAL + ["cylinder", "triangle", "moving"]),
+    ("wall_force", "mixed", EQUAL + ["plane", "rectangle", "cylinder", "triangle", "moving"]),
     ("lattice", "double", ["small"]),
     ("lattice", "single", ["small"]),
     ("lattice", "double", ["turn", "volume"]),
@@ -39,7 +43,7 @@ CASES = [
     ("pair_force", "double", ["spin", "hertz", "tangential", "damping", "jkr", "sizes"]),
 ]
 # One of each kernel and scheme, each precision.
-SOME = [CASES[1], CASES[5], CASES[8], CASES[14], CASES[15]]
+SOME = [CASES[1], CASES[8], CASES[12], CASES[18], CASES[19]]
 
 
 def vector_bytes():
