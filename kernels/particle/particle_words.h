@@ -17,6 +17,9 @@
 #define GRID_REALS 7
 #define GRID_INTS 4
 
+/* So many primitives of a wall at most have a common box (wall_lists.cl). */
+#define WALL_BLOCK 16
+
 /* A wall's pose in preal: rotation 9 (rows), translation 3; velocity 3, spin 3, centre 3 of the
  * half step; active; velocity 3, spin 3, centre 3 of the step itself. */
 #define POSE_WIDTH 31

@@ -9,13 +9,23 @@
 #include "contact/law_wall.h"
 #include "wall_pose.h"
 
+/* Whether the box b, low and high in the wall's frame, is farther from q than `far` along an
+ * axis. */
+LAW int wall_is_beyond(__global const preal *b, pvec3 q, preal far)
+{
+    return q.x < b[0] - far || q.y < b[1] - far || q.z < b[2] - far || q.x > b[3] + far ||
+           q.y > b[4] + far || q.z > b[5] + far;
+}
+
 /* fill 0: begin[e] = number of candidates; fill 1: candidate (primitive) and owner element of each.
- * bounds [n_primitive][6] low and high in the wall's frame. */
-__kernel __attribute__((reqd_work_group_size(64, 1, 1))) void wall_rows(int n_owned,
-    int n_primitive, int fill, __global const preal *position, __global const preal *reach,
-    __global const preal *primitive, __global const preal *bounds, __global const int *wall_of,
-    __global const preal *pose, __global const preal *room, __global int *begin,
-    __global int *candidate, __global int *candidate_element)
+ * block_begin [n_block + 1]: primitives of the blocks, each of one wall; bounds [n_primitive][6],
+ * block_bounds [n_block][6]: low and high in the wall's frame. */
+__kernel __attribute__((reqd_work_group_size(64, 1, 1))) void wall_rows(int n_owned, int n_block,
+    int fill, __global const preal *position, __global const preal *reach,
+    __global const preal *primitive, __global const preal *bounds, __global const int *block_begin,
+    __global const preal *block_bounds, __global const int *wall_of, __global const preal *pose,
+    __global const preal *room, __global int *begin, __global int *candidate,
+    __global int *candidate_element)
 {
     int e = get_global_id(0);
     if (e >= n_owned) return;
@@ -24,22 +34,22 @@ __kernel __attribute__((reqd_work_group_size(64, 1, 1))) void wall_rows(int n_ow
     /* a triangle takes part in a valley a little beyond the radius */
     preal own = reach[e], valley = (FILLET_REACH - (preal)1) * p.s3;
     int at = fill ? begin[e] : 0;
-    for (int k = 0; k < n_primitive; k++) {
-        int w = wall_of[k];
+    for (int b = 0; b < n_block; b++) {
+        int w = wall_of[block_begin[b]];
         if (room[w] < 0) continue;
         pvec3 q = wall_to_reference(pose_frame(pose + w * POSE_WIDTH), x);
-        preal far = own + room[w];
-        if (primitive[12 * k + 11] == (preal)WALL_TRIANGLE) far += valley;
-        __global const preal *b = bounds + 6 * k;
-        if (q.x < b[0] - far || q.y < b[1] - far || q.z < b[2] - far || q.x > b[3] + far ||
-            q.y > b[4] + far || q.z > b[5] + far)
-            continue;
-        if (!(wall_closest(WALL_PRIMITIVE(primitive, k), q).distance < far)) continue;
-        if (fill) {
-            candidate[at] = k;
-            candidate_element[at] = e;
+        preal most = own + room[w];
+        if (wall_is_beyond(block_bounds + 6 * b, q, most + valley)) continue;
+        for (int k = block_begin[b]; k < block_begin[b + 1]; k++) {
+            preal far = primitive[12 * k + 11] == (preal)WALL_TRIANGLE ? most + valley : most;
+            if (wall_is_beyond(bounds + 6 * k, q, far)) continue;
+            if (!(wall_closest(WALL_PRIMITIVE(primitive, k), q).distance < far)) continue;
+            if (fill) {
+                candidate[at] = k;
+                candidate_element[at] = e;
+            }
+            at++;
         }
-        at++;
     }
     if (!fill) begin[e] = at;
 }

@@ -16,6 +16,8 @@ static const struct buffer_spec list_buffers[] = {{"wall begin", offsetof(struct
 static const struct buffer_spec own_buffers[] = {
     {"wall primitives", offsetof(struct wall_contacts, primitive)},
     {"wall bounds", offsetof(struct wall_contacts, bounds)},
+    {"wall blocks", offsetof(struct wall_contacts, block_begin)},
+    {"wall block bounds", offsetof(struct wall_contacts, block_bounds)},
     {"wall features", offsetof(struct wall_contacts, triangle_features)},
     {"wall of primitive", offsetof(struct wall_contacts, wall_of)},
     {"wall material", offsetof(struct wall_contacts, material)},
@@ -27,6 +29,36 @@ static const struct buffer_spec own_buffers[] = {
     {"wall results", offsetof(struct wall_contacts, result)},
     {"wall ledger", offsetof(struct wall_contacts, ledger)},
     {"wall pose batch", offsetof(struct wall_contacts, batch)}, {0}};
+
+/* Blocks of up to WALL_BLOCK primitives of one wall that follow each other, and the boxes around
+ * them: an element that is far from a box looks at none of its primitives. */
+static void upload_blocks(struct wall_contacts *w, const double *bounds)
+{
+    const struct walls *walls = w->walls;
+    size_t n = (size_t)walls->n_primitive;
+    double *box = fail_alloc(6 * n * sizeof *box);
+    cl_int *begin = fail_alloc((n + 1) * sizeof *begin);
+    int n_block = 0;
+    for (int k = 0; k < walls->n_primitive; k++) {
+        bool goes_on = n_block > 0 && k - begin[n_block - 1] < WALL_BLOCK &&
+                       walls->wall_of[k] == walls->wall_of[k - 1];
+        if (!goes_on) {
+            memcpy(box + 6 * n_block, bounds + 6 * k, 6 * sizeof *box);
+            begin[n_block++] = k;
+        }
+        double *block = box + 6 * (n_block - 1);
+        for (int a = 0; a < 3; a++) {
+            block[a] = fmin(block[a], bounds[6 * k + a]);
+            block[3 + a] = fmax(block[3 + a], bounds[6 * k + 3 + a]);
+        }
+    }
+    begin[n_block] = walls->n_primitive;
+    w->n_block = n_block;
+    reals_put(&w->block_bounds, w->features->position_is_float, 6 * (size_t)n_block, box);
+    buffer_put(&w->block_begin, ((size_t)n_block + 1) * sizeof *begin, begin);
+    free(box);
+    free(begin);
+}
 
 static void upload_walls(struct wall_contacts *w, const struct scene *scene)
 {
@@ -47,6 +79,7 @@ static void upload_walls(struct wall_contacts *w, const struct scene *scene)
     buffer_reserve(&w->batch, WALL_BATCH * n_wall * POSE_WIDTH * preal);
     reals_put(&w->primitive, is_float, 12 * n, walls->primitive);
     reals_put(&w->bounds, is_float, 6 * n, bounds);
+    upload_blocks(w, bounds);
     buffer_put(&w->triangle_features, 6 * n * sizeof(cl_int), walls->features);
     buffer_put(&w->wall_of, n * sizeof(cl_int), walls->wall_of);
     buffer_put(&w->material, n_wall * sizeof(cl_int), material);
@@ -206,10 +239,11 @@ void wall_contacts_build(struct wall_contacts *w, struct scan *scan, const struc
     set_room(w, step, horizon_steps, box);
     buffer_reserve(&l->begin, ((size_t)l->n_owned + 1) * sizeof(cl_int));
     launch_set_count(w->rows, "n_owned", l->n_owned);
-    launch_set_int(w->rows, "n_primitive", w->walls->n_primitive);
+    launch_set_int(w->rows, "n_block", w->n_block);
     launch_bind_all(w->rows,
         (const struct launch_binding[]){{"position", &p->field[FIELD_STATE].now},
             {"reach", &p->reach}, {"primitive", &w->primitive}, {"bounds", &w->bounds},
+            {"block_begin", &w->block_begin}, {"block_bounds", &w->block_bounds},
             {"wall_of", &w->wall_of}, {"pose", &w->pose}, {"room", &w->room}, {"begin", &l->begin},
             {"candidate", &l->candidate}, {"candidate_element", &l->element}, {0}});
     launch_set_int(w->rows, "fill", 0);

@@ -30,6 +30,9 @@ struct wall_contacts {
     struct contact_arrivals arrivals;
     struct buffer primitive, bounds, triangle_features, wall_of, material, room, pose, result,
         ledger;
+    /* int [n_block + 1]: first primitive of each block; preal [n_block][6]: its box */
+    struct buffer block_begin, block_bounds;
+    int n_block;
     struct buffer keep, partner, near; /* of wall_keep.cl; only with triangles */
     struct buffer batch;               /* preal [WALL_BATCH][n_wall][POSE_WIDTH] */
     struct wall_pose *poses;           /* [WALL_BATCH][n_wall] on the host */
