@@ -77,9 +77,10 @@ LAW struct stress lattice_stress_cut(
     return stress_parts(WITH_TURN ? stress_in_cell(r, c.q) : r, links);
 }
 
-/* The link of a cell that its stress breaks, as a mask; 0 where none is pulled (law_principal.h).
- * s: as lattice_stress_of gives it. */
-LAW int lattice_principal(struct lattice_through f, struct stress s, struct link_cell c, int links)
+/* The link that breaks of a cell that fails, as a mask; 0 where none is pulled, or where the cell
+ * bears more in this direction (law_principal.h). s: as lattice_stress_of gives it. */
+LAW int lattice_principal(struct lattice_through f, struct stress s, struct link_cell c, int links,
+    real inverse, real rise)
 {
     vec3 d = principal_direction(s),
          world = WITH_TURN ? v3_of_p3(quat_rotate(c.q, p3_of_v3(d))) : d;
@@ -88,6 +89,7 @@ LAW int lattice_principal(struct lattice_through f, struct stress s, struct link
         principal_pull(f.z[0], world, -d.z), principal_pull(f.z[1], world, d.z)};
     real most = 0;
     int link = 0;
+    links = principal_runs(s, d, inverse, rise) ? links : 0;
     for (int face = 0; face < 6; face++)
         if (links >> face & 1 && pull[face] > most) {
             most = pull[face];

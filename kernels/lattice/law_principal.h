@@ -6,7 +6,11 @@
  * without roots or angles. Of the links the one breaks that the principal direction d pulls most:
  *     q = (f.d) sign(n.d), n the outward normal of the face, f the force on the cell through it,
  * in a uniform stress h^2 s1 |n.d|: the link most normal to the crack that opens. The first in the
- * order of the mask of those that are equal. */
+ * order of the mask of those that are equal.
+ *
+ * A strength that stands for a fracture energy depends on d: the layers of cells ahead of a crack
+ * lie closer where it is inclined to the grid. It is sigma_c (1 + rise q^2), q = 1 - (d_x^4 + d_y^4
+ * + d_z^4) with |d| = 1: 0 along the grid, 1/2 across {110}, 2/3 across {111}. */
 #ifndef DEMOCLES_LAW_PRINCIPAL_H
 #define DEMOCLES_LAW_PRINCIPAL_H
 
@@ -52,6 +56,19 @@ LAW vec3 principal_direction(struct stress s)
     return m.xx >= m.yy && m.xx >= m.zz ? v3(m.xx, m.xy, m.zx)
            : m.yy >= m.zz               ? v3(m.xy, m.yy, m.yz)
                                         : v3(m.zx, m.yz, m.zz);
+}
+
+/* s1 >= sigma_c (1 + rise q^2) for a stress of which s1 >= sigma_c is known. d: its direction;
+ * rise 0: a strength that does not depend on it. */
+LAW int principal_runs(struct stress s, vec3 d, real inverse, real rise)
+{
+    real x = d.x * d.x, y = d.y * d.y, z = d.z * d.z, size = x + (y + z);
+    real across = (real)2 * r_fma(x, y, r_fma(y, z, z * x)) / (size * size);
+    real pull = r_fma(s.xx, x,
+        r_fma(s.yy, y,
+            r_fma(s.zz, z,
+                (real)2 * r_fma(s.yz, d.y * d.z, r_fma(s.zx, d.z * d.x, s.xy * (d.x * d.y))))));
+    return !(rise > 0) || inverse * pull >= size * r_fma(rise, across * across, (real)1);
 }
 
 /* q of a face; outward: component of d on its outward normal. */

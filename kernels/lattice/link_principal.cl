@@ -46,11 +46,12 @@ LAW struct principal_cell principal_cell_of(int mixed, struct lattice_view s, si
     struct link_cell me = lattice_moving(s, i, lattice_cell(s, i));                                \
     struct lattice_load load = LOAD_OF(i);                                                         \
     struct principal_cell c = principal_cell_of(mixed, s, l, word_i, me, load)
+#define LIMIT(mixed) (mixed ? LATTICE_KIND(word_i) : kind)
 #define RUN(mixed)                                                                                 \
     BATCH_VECTOR                                                                                   \
     FOR_BATCH (l, BATCH) {                                                                         \
         CELL(mixed);                                                                               \
-        due[i] = principal_fails(c.s, inverse[mixed ? LATTICE_KIND(word_i) : kind]);               \
+        due[i] = principal_fails(c.s, inverse[LIMIT(mixed)]);                                      \
     }                                                                                              \
     FOR_BATCH (l, BATCH) {                                                                         \
         if (!due[s.begin + l]) continue;                                                           \
@@ -58,12 +59,14 @@ LAW struct principal_cell principal_cell_of(int mixed, struct lattice_view s, si
         int going = lattice_gone(fate[i], fate[lattice_beside(s, 0, l)],                           \
             fate[lattice_beside(s, 2, l)], fate[lattice_beside(s, 4, l)]);                         \
         int links = LATTICE_LINKS(word_i);                                                         \
-        due[i] = going & links ? 0 : lattice_principal(c.f, c.s, me, links);                       \
+        due[i] = going & links ? 0                                                                 \
+                               : lattice_principal(c.f, c.s, me, links, inverse[LIMIT(mixed)],     \
+                                     inverse[n_kind + LIMIT(mixed)]);                              \
     }
 
-/* After link_due (and link_break), before link_sever. inverse [n_kind]: 1/sigma_c [1/Pa]; due: of
- * each cell the link that goes with the next step, a mask. A cell that loses a link with this one
- * waits: its stress is about to change. */
+/* After link_due (and link_break), before link_sever. inverse [2 n_kind]: 1/sigma_c [1/Pa], then
+ * rise [1]; due: of each cell the link that goes with the next step, a mask. A cell that loses a
+ * link with this one waits: its stress is about to change. */
 __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void link_judge(int n,
     __global const int *list, __global const int *info, __global const int *base,
     __global const int *word, int n_run, int n_kind, long plane, __global const preal *x, long x_in,

@@ -91,7 +91,7 @@ static void create_principal(struct lattice_break *b, const struct lattice_cells
     char *text = lattice_features_options(&l->features, l->layout);
     double *inverse = lattice_features_principal(cells, &l->options);
     b->program_principal = program_build(l->dev, l->comm, "principal stress", text, source);
-    reals_put(&b->inverse, l->features.real_is_float, (size_t)l->n_kind, inverse);
+    reals_put(&b->inverse, l->features.real_is_float, 2 * (size_t)l->n_kind, inverse);
     free(inverse);
     free(text);
     buffer_reserve(&b->due, (size_t)l->layout->plane * sizeof(int32_t));

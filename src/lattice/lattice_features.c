@@ -104,9 +104,12 @@ double *lattice_features_limits(const struct lattice_cells *cells, const struct 
 double *lattice_features_principal(
     const struct lattice_cells *cells, const struct lattice_options *o)
 {
-    double *inverse = fail_alloc((size_t)cells->n_kind * sizeof *inverse);
-    for (int k = 0; k < cells->n_kind; k++)
+    int n = cells->n_kind;
+    double *inverse = fail_alloc(2 * (size_t)n * sizeof *inverse);
+    for (int k = 0; k < n; k++) {
         inverse[k] = o->strength[k].principal > 0 ? 1 / o->strength[k].principal : 0;
+        inverse[n + k] = o->strength[k].rise;
+    }
     return inverse;
 }
 

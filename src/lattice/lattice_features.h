@@ -62,7 +62,8 @@ char *lattice_features_options(
 double *lattice_features_links(const struct lattice_cells *cells, const struct lattice_options *o);
 /* Limits [n_kind][n_kind][BREAK_WIDTH]; options have strengths. */
 double *lattice_features_limits(const struct lattice_cells *cells, const struct lattice_options *o);
-/* One over the largest principal stress that cells bear [n_kind] [1/Pa], 0: any. */
+/* One over the largest principal stress that cells bear [n_kind] [1/Pa], 0: any; then its rise
+ * [n_kind], as kernels/lattice/law_principal.h. */
 double *lattice_features_principal(
     const struct lattice_cells *cells, const struct lattice_options *o);
 /* Shares [n_share][SHARE_WIDTH]. */

@@ -106,7 +106,7 @@ struct link_strength link_constants_weaker(struct link_strength i, struct link_s
                 (i.tension <= j.tension &&
                     (i.shear < j.shear || (i.shear <= j.shear && i.criterion < j.criterion)));
     return (struct link_strength){
-        fmin(i.tension, j.tension), fmin(i.shear, j.shear), is_i ? i.criterion : j.criterion, 0};
+        fmin(i.tension, j.tension), fmin(i.shear, j.shear), is_i ? i.criterion : j.criterion, 0, 0};
 }
 
 struct link_limits link_constants_limits(struct link_strength strength, double h)
@@ -115,6 +115,10 @@ struct link_limits link_constants_limits(struct link_strength strength, double h
     return (struct link_limits){1 / (area * strength.tension), 1 / (area * strength.shear),
         6 / (area * h * strength.tension), 3 / (area * h * strength.shear)};
 }
+
+/* What the worst cell at a crack's tip bears, over K/sqrt(h): along the grid, and how it rises. */
+#define TIP_ALONG 0.625
+#define TIP_RISE 0.1
 
 /* K/sqrt(h) [Pa] of a crack that spends `energy`. */
 static double stress_at_tip(struct link_material m, double energy, double h, bool plane_strain)
@@ -130,5 +134,10 @@ double link_constants_tension(struct link_material m, double energy, double h, b
 
 double link_constants_principal(struct link_material m, double energy, double h, bool plane_strain)
 {
-    return 0.64 * stress_at_tip(m, energy, h, plane_strain);
+    return TIP_ALONG * stress_at_tip(m, energy, h, plane_strain);
+}
+
+double link_constants_rise(void)
+{
+    return TIP_RISE / TIP_ALONG;
 }

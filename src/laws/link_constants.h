@@ -39,8 +39,9 @@ struct link_stiffness {
 struct link_strength {
     double tension, shear; /* sigma_c, tau_c [Pa] */
     int criterion;         /* BREAK_* of kernels/lattice/law_break.h */
-    /* largest principal stress of a cell [Pa], kernels/lattice/law_principal.h; 0: any */
-    double principal;
+    /* largest principal stress of a cell [Pa], 0: any, and how it rises with its direction [1],
+     * kernels/lattice/law_principal.h */
+    double principal, rise;
 };
 
 /* One over what a link bears, for kernels/lattice/law_break.h; 0: anything. */
@@ -86,9 +87,10 @@ struct link_limits link_constants_limits(struct link_strength strength, double h
  * nu^2) in plane strain. */
 double link_constants_tension(struct link_material m, double energy, double h, bool plane_strain);
 /* The same for the largest principal stress of a cell. The worst cell at the tip of a K field bears
- * 0.62 K/sqrt(h) where the crack is along the grid (0.620 to 0.632, nu from 0 to 0.45), 0.61 to
- * 0.65 where it is inclined in a plane, 0.63 to 0.70 on {110} and {111} (docs/lattice.md): 0.64 in
- * sigma_c = 0.64 sqrt(E' G_c/h) is between. */
+ * 0.62 K/sqrt(h) where the crack is along the grid, 0.64 where it is inclined in a plane, 0.63 to
+ * 0.70 on {110} and {111} (docs/lattice.md): (0.625 + 0.1 q^2) sqrt(E' G_c/h) is within 4 % of all
+ * of them. The strength for q = 0, and what it rises by. */
 double link_constants_principal(struct link_material m, double energy, double h, bool plane_strain);
+double link_constants_rise(void);
 
 #endif

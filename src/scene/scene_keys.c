@@ -75,7 +75,7 @@ const struct scene_key scene_keys[] = {
         "principal stress of a cell, as criterion says"},
 {"materials.NAME.strength.energy", KEY_NUMBER, ONE_OF, UNIT_FRACTURE, .range = ABOVE_ZERO,
     .at = AT(material, energy),
-    .text = "fracture energy G_c, in place of tension: tensile strength 0.64 sqrt(E' G_c/h) for "
+    .text = "fracture energy G_c, in place of tension: tensile strength 0.625 sqrt(E' G_c/h) for "
         "cells of edge h with criterion principal, so that a slow crack dissipates G_c in any "
         "direction, or 0.75 sqrt(E' G_c/h) with criterion largest (the default beside energy), "
         "where this holds for cracks along the grid only"},

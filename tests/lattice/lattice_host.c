@@ -202,8 +202,10 @@ static void judge_cells(struct host *h)
             fate[axis] = j < 0 ? 0 : h->fate[j];
         }
         bool waits = lattice_gone(h->fate[i], fate[0], fate[1], fate[2]) & h->links[i];
-        h->due[i] = !waits && principal_fails(s, h->inverse[h->cells->kind_of[i]])
-                        ? lattice_principal(f, s, h->now[i], h->links[i])
+        const real *inverse = &h->inverse[h->cells->kind_of[i]];
+        h->due[i] = !waits && principal_fails(s, *inverse)
+                        ? lattice_principal(
+                              f, s, h->now[i], h->links[i], *inverse, inverse[h->cells->n_kind])
                         : 0;
     }
 }

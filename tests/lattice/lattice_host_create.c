@@ -50,7 +50,7 @@ struct host *host_create(const struct lattice_cells *cells, const struct lattice
             lattice_features_kicks(cells, options), (int64_t)(h->scheme->n + 2) * k * KICK_WIDTH);
     if (options->strength)
         h->limit = reals(lattice_features_limits(cells, options), (int64_t)k * k * BREAK_WIDTH);
-    if (WITH_PRINCIPAL) h->inverse = reals(lattice_features_principal(cells, options), k);
+    if (WITH_PRINCIPAL) h->inverse = reals(lattice_features_principal(cells, options), 2 * k);
     h->due = fail_alloc(n * sizeof *h->due);
     if (WITH_LOADS) {
         h->rows = fail_alloc((size_t)options->n_row * LOAD_WIDTH * sizeof *h->rows);

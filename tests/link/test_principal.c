@@ -65,6 +65,45 @@ static void direction(void **state)
     }
 }
 
+/* The strength rises by rise q^2: q is 0 along the grid, 1/2 across {110}, 2/3 across {111}, and
+ * does not change as axes change places. */
+static void rises(void **state)
+{
+    static const double axis[][4] = {
+        {1, 0, 0, 0}, {0, 0, 1, 0}, {0, 1, 1, 0.25}, {1, 0, -1, 0.25}, {1, -1, 1, 4. / 9}};
+    (void)state;
+    for (int k = 0; k < 5; k++)
+        for (int j = 0; j < 100; j++) {
+            double rise = uniform(0.01, 2), limit = 1 + rise * axis[k][3];
+            vec3 n = v3((real)axis[k][0], (real)axis[k][1], (real)axis[k][2]), d;
+            double size = (double)v3_dot(n, n);
+            vec3 r = v3_scale((real)(1 / size), n);
+            struct stress s = {.xx = r.x * n.x,
+                .yy = r.y * n.y,
+                .zz = r.z * n.z,
+                .yz = r.y * n.z,
+                .zx = r.z * n.x,
+                .xy = r.x * n.y};
+            d = v3_scale((real)uniform(0.1, 10), n);
+            assert_true(principal_runs(s, d, (real)(limit * (1 + 1e-12)), (real)rise));
+            assert_false(principal_runs(s, d, (real)(limit * (1 - 1e-12)), (real)rise));
+            assert_true(principal_runs(s, d, 0, 0));
+        }
+}
+
+/* A strength that rises holds the link. */
+static void holds(void **state)
+{
+    struct link_cell c = {.q = quat_of(1, 0, 0, 0)};
+    struct stress_rows r = {v3(1, 1, 0), v3(1, 1, 0), v3(0, 0, 0)};
+    struct lattice_through f = {
+        {v3_scale(-1, r.x), r.x}, {v3_scale(-1, r.y), r.y}, {v3_scale(-1, r.z), r.z}};
+    struct stress s = stress_parts(r, 63);
+    (void)state;
+    assert_int_equal(lattice_principal(f, s, c, 63, (real)0.52, (real)0.1), 1);
+    assert_int_equal(lattice_principal(f, s, c, 63, (real)0.51, (real)0.1), 0);
+}
+
 /* In a uniform stress the link most normal to the crack, the first of two that are equal, and one
  * that exists. */
 static void link(void **state)
@@ -79,17 +118,19 @@ static void link(void **state)
         struct lattice_through f = {
             {v3_scale(-1, r.x), r.x}, {v3_scale(-1, r.y), r.y}, {v3_scale(-1, r.z), r.z}};
         double part[3] = {fabs((double)d.x), fabs((double)d.y), fabs((double)d.z)};
-        int found = lattice_principal(f, s, c, 63), upper = lattice_principal(f, s, c, 42),
+        int found = lattice_principal(f, s, c, 63, 1, 0),
+            upper = lattice_principal(f, s, c, 42, 1, 0),
             axis = part[0] > part[1] ? (part[0] > part[2] ? 0 : 2) : (part[1] > part[2] ? 1 : 2);
         assert_true((found == 1 << (2 * axis)) || found == 2 << (2 * axis));
         assert_int_equal(upper, 2 << (2 * axis));
-        assert_int_equal(lattice_principal(f, s, c, 0), 0);
+        assert_int_equal(lattice_principal(f, s, c, 0, 1, 0), 0);
     }
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(fails), cmocka_unit_test(shear),
-        cmocka_unit_test(direction), cmocka_unit_test(link)};
+        cmocka_unit_test(direction), cmocka_unit_test(rises), cmocka_unit_test(holds),
+        cmocka_unit_test(link)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
