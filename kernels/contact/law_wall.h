@@ -244,9 +244,9 @@ LAW struct wall_closest wall_closest(struct wall_primitive w, pvec3 x)
  * those of a smooth surface act together. Candidates further away than t can neither hide it nor
  * coincide with it, so the answer does not depend on how far the list reaches.
  *
- * Of walls that are flush (a gate in a floor) an edge or corner of one is no minimum either where
- * its point lies on another that is nearer: wall_is_flush, which needs no common number. The same
- * point is met once, whoever has it.
+ * Of walls that are flush (a gate in a floor, rectangles side by side) an edge or corner of one is
+ * no minimum either where its point lies on another that is nearer: wall_is_flush, which needs no
+ * common number. The same point of flat walls is met once, whoever has it.
  *
  * A shared edge or vertex has one number in the whole mesh; edges and vertices are numbered
  * together and never alike. */
@@ -321,6 +321,12 @@ LAW int wall_coincides(struct wall_closest s, struct wall_closest t, preal radiu
 #define WALL_ROUNDING 1e-6
 #endif
 
+/* Kinds that may lie in one plane: two of them whose closest points coincide are met once. */
+LAW int wall_is_flat(int kind)
+{
+    return kind == WALL_PLANE || kind == WALL_RECTANGLE || kind == WALL_TRIANGLE;
+}
+
 /* Whether a point of one wall lies on a primitive s of another. on: wall_closest of s, seen from
  * that point; size: largest coordinate of the point [m]. */
 LAW int wall_is_flush(struct wall_closest on, preal size, preal radius)
@@ -329,13 +335,13 @@ LAW int wall_is_flush(struct wall_closest on, preal size, preal radius)
     return on.distance < reach && on.distance > -reach;
 }
 
-/* History passes from one triangle to the next as a sphere moves over a mesh, or friction would
- * restart at every edge. The contact that begins takes the spring of one that ended in the same
- * step if the normals agree: cos > 0.9. Of several the largest cosine, then the lowest triangle; an
- * old contact gives its history away once. Both are places of one sphere less than 26 degrees
- * apart, so no common edge or vertex is asked for: a step may cross several thin triangles. From
- * wall to wall only where the points are closer than a tenth of the radius. Seen from the same
- * centre, in the same frame. */
+/* History passes from one flat primitive to the next as a sphere moves over a mesh, or friction
+ * would restart at every edge. The contact that begins takes the spring of one that ended in the
+ * same step if the normals agree: cos > 0.9. Of several the largest cosine, then the lowest
+ * triangle; an old contact gives its history away once. Both are places of one sphere less than 26
+ * degrees apart, so no common edge or vertex is asked for: a step may cross several thin
+ * triangles. From wall to wall only where the points are closer than a tenth of the radius. Seen
+ * from the same centre, in the same frame. */
 LAW int wall_hands_over(
     struct wall_closest old, struct wall_closest begun, int same_wall, preal radius)
 {

@@ -8,6 +8,7 @@
  * lint: some of WITH_LINEAR WITH_HERTZ
  * lint: WITH_TANGENTIAL_DAMPING requires WITH_TANGENTIAL
  * lint: WITH_TRIANGLE requires WITH_WALLS
+ * lint: WITH_JOINED requires WITH_WALLS
  * lint: WITH_MATERIALS requires WITH_SPIN */
 #include "limit_element.h"
 #include "contact/law_wall.h"
@@ -86,7 +87,7 @@ __kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void step_limit(int 
     __global const int *wall_begin, __global const int *candidate, __global const preal *primitive,
     __global const int *wall_of, __global const int *wall_material, __global const preal *pose,
 #endif
-#if WITH_TRIANGLE
+#if WITH_JOINED
     __global const real *keep, __global const int *partner, __global const preal *near,
 #endif
     __global const real *table, __global real *partial, __global long *partial_gid)
@@ -111,7 +112,7 @@ __kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void step_limit(int 
 #if WITH_WALLS
         for (int k = wall_begin[e]; k < wall_begin[e + 1]; k++) {
             int p = candidate[k], w = wall_of[p];
-#if WITH_TRIANGLE
+#if WITH_JOINED
             if (!(keep[k] > 0)) continue;
             struct fillet_plane other = wall_partner(near, partner[k]);
 #else

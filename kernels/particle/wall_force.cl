@@ -36,13 +36,13 @@
 #define L_MASS (L_SPUN + (SPIN_KICKS ? 3 : 0))  /* 1/m */
 #define L_KIND (L_MASS + (WITH_SIZES ? 1 : 0))  /* row of the table */
 #define L_SHARE (L_KIND + (WITH_TABLE ? 1 : 0)) /* of wall_keep.cl */
-#define L_ROWS (L_SHARE + (WITH_TRIANGLE ? 1 : 0))
+#define L_ROWS (L_SHARE + (WITH_JOINED ? 1 : 0))
 #define ROWS (L_ROWS > 6 ? L_ROWS : 6)
 #define P_X 0
 #define P_RADIUS 3
 #define P_PRIMITIVE 4
 #define P_PARTNER 16 /* n, distance */
-#define P_ROWS (WITH_TRIANGLE ? 20 : 16)
+#define P_ROWS (WITH_JOINED ? 20 : 16)
 #define LOC(row) loc[(row)*BATCH + l]
 #define PLACE(row) place[(row)*BATCH + l]
 
@@ -63,7 +63,7 @@
 #define GEOMETRY(primitive, x, v) wall_geometry(primitive, x, v, dt)
 #endif
 
-#if WITH_TRIANGLE
+#if WITH_JOINED
 #define SHARE LOC(L_SHARE)
 #define VALLEY(g, v, radius)                                                                       \
     wall_geometry_valley(                                                                          \
@@ -144,7 +144,7 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void wall_forc
 #if WITH_MOVING
     __global const preal *restrict pose,
 #endif
-#if WITH_TRIANGLE
+#if WITH_JOINED
     __global const real *restrict keep, __global const int *restrict partner,
     __global const preal *restrict near,
 #endif
@@ -178,7 +178,7 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void wall_forc
 #if WITH_MOVING
         wall[l] = wall_of[k];
 #endif
-#if WITH_TRIANGLE
+#if WITH_JOINED
         wall_load_near(near, partner[base + l], keep[base + l], place, loc, l);
 #endif
 #if WITH_TABLE

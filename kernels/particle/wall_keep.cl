@@ -1,14 +1,15 @@
-/* Scenes with meshes only: of the primitives near an element, which are contacts, how they act
- * together, and the passing on of friction from one triangle to the next (law_wall.h,
- * law_fillet.h). One work-item per element, because the candidates of one element decide about each
- * other.
+/* Scenes with meshes, or with flat walls that are flush, only: of the primitives near an element,
+ * which are contacts, how they act together, and the passing on of friction from one triangle to
+ * the next (law_wall.h, law_fillet.h). One work-item per element, because the candidates of one
+ * element decide about each other.
  *
  * near [n_candidate][4]: unit vector to the closest point, and the distance [m]; partner
  * [n_candidate]: the candidate with which it forms a valley, -1 without one; keep [n_candidate]:
  * share with which a contact acts, 0 where a deeper one acts for it, -1 where it is no local
  * minimum of the distance.
  *
- * lint: WITH_TRIANGLE requires WITH_WALLS */
+ * lint: WITH_TRIANGLE requires WITH_WALLS
+ * lint: WITH_JOINED requires WITH_WALLS */
 #include "element.h"
 #include "contact/contact_memory.h"
 #include "wall_near.h"
@@ -41,9 +42,9 @@ LAW struct wall_features wall_features_of(struct wall_sight w, int k)
     return WALL_FEATURES(w.features, w.candidate[k]);
 }
 
-LAW int wall_is_triangle(struct wall_sight w, int k)
+LAW int wall_kind(struct wall_sight w, int k)
 {
-    return w.primitive[WALL_PRIMITIVE_WIDTH * w.candidate[k] + 11] == (preal)WALL_TRIANGLE;
+    return (int)w.primitive[WALL_PRIMITIVE_WIDTH * w.candidate[k] + 11];
 }
 
 LAW int wall_is_same(struct wall_sight w, int s, int t)
@@ -56,20 +57,20 @@ LAW int wall_is_minimum(struct wall_sight w, int t)
     struct wall_closest c = wall_near(w.near, w.partner, t);
     pvec3 point = p3_add(w.x, c.D);
     preal size = r_max(r_max(fabs(point.x), fabs(point.y)), fabs(point.z));
-    int is_triangle = wall_is_triangle(w, t);
+    int kind = wall_kind(w, t);
     if (!(c.distance < w.radius * IN_SIGHT)) return 1;
     for (int s = w.first; s < w.end; s++) {
         if (s == t) continue;
         struct wall_closest d = wall_near(w.near, w.partner, s);
         if (wall_is_same(w, s, t)) {
-            if (is_triangle &&
+            if (kind == WALL_TRIANGLE &&
                 wall_hides(d, wall_features_of(w, s), c, wall_features_of(w, t), w.radius))
                 return 0;
         } else if (c.feature != 0 && d.distance < c.distance - WALL_TIE * w.radius &&
                    wall_is_flush(wall_seen(w, s, point), size, w.radius)) {
             return 0;
         }
-        if (s < t && is_triangle && wall_is_triangle(w, s) && w.keep[s] > 0 &&
+        if (s < t && wall_is_flat(kind) && wall_is_flat(wall_kind(w, s)) && w.keep[s] > 0 &&
             wall_coincides(d, c, w.radius))
             return 0;
     }
@@ -83,10 +84,11 @@ LAW void wall_join(struct wall_sight w, int t)
     preal share = 1, best = own.distance;
     int other = -1;
     w.partner[t] = -1;
-    if (!wall_is_triangle(w, t) || !(w.keep[t] >= 0) || !(own.distance < w.radius * IN_SIGHT))
+    if (wall_kind(w, t) != WALL_TRIANGLE || !(w.keep[t] >= 0) ||
+        !(own.distance < w.radius * IN_SIGHT))
         return;
     for (int s = w.first; s < w.end; s++) {
-        if (s == t || !wall_is_triangle(w, s) || w.keep[s] < 0 || !wall_is_same(w, s, t)) continue;
+        if (s == t || w.keep[s] < 0 || !wall_is_same(w, s, t)) continue;
         struct fillet_plane d = wall_plane(w.near, s), valley = fillet_of(own, d, w.radius);
         int is_deeper = d.distance < own.distance || (!(own.distance < d.distance) && s < t);
         if (is_deeper) share *= (preal)1 - fillet_hides(p3_dot(own.n, d.n));
@@ -106,9 +108,10 @@ LAW int wall_giver(struct wall_sight w, __global const int *state, int t)
     int giver = -1;
     preal best = 0;
     struct wall_closest c = wall_near(w.near, w.partner, t);
-    if (!wall_is_triangle(w, t) || !wall_acts(w.near, w.partner, w.keep, t, w.radius)) return -1;
+    if (!wall_is_flat(wall_kind(w, t)) || !wall_acts(w.near, w.partner, w.keep, t, w.radius))
+        return -1;
     for (int s = w.first; s < w.end; s++) {
-        if (s == t || state[s] == 0 || !wall_is_triangle(w, s) ||
+        if (s == t || state[s] == 0 || !wall_is_flat(wall_kind(w, s)) ||
             wall_acts(w.near, w.partner, w.keep, s, w.radius))
             continue;
         struct wall_closest d = wall_near(w.near, w.partner, s);

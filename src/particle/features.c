@@ -98,6 +98,7 @@ struct features features_of(
     f.rectangle = walls->n_of_kind[WALL_RECTANGLE] > 0;
     f.cylinder = walls->n_of_kind[WALL_PIPE] + walls->n_of_kind[WALL_ROD] > 0;
     f.triangle = walls->n_of_kind[WALL_TRIANGLE] > 0;
+    f.joined = f.triangle || walls_flush(walls);
     f.moving = walls->n_moving > 0;
     for (int w = 0; w < scene->n_wall; w++)
         f.timed |= scene->wall[w].appear_at > 0 || isfinite(scene->wall[w].remove_at);
@@ -144,6 +145,7 @@ const struct feature_row features_table[] = {
     ROW(rectangle, "WITH_RECTANGLE", FEATURES_WALL),
     ROW(cylinder, "WITH_CYLINDER", FEATURES_WALL),
     ROW(triangle, "WITH_TRIANGLE", FEATURES_WALL),
+    ROW(joined, "WITH_JOINED", FEATURES_WALL),
     ROW(moving, "WITH_MOVING", FEATURES_WALL),
     ROW(timed, NULL, 0),
     ROW(remove_outside, NULL, 0),

@@ -31,6 +31,7 @@ struct features {
     bool orientation;
     bool periodic[3];
     bool walls, plane, rectangle, cylinder, triangle;
+    bool joined; /* contacts of one element with walls decide about each other: wall_keep.cl */
     bool moving, timed; /* walls move; appear or go */
     bool remove_outside;
     struct law_features pair, wall;

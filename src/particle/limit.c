@@ -134,7 +134,7 @@ struct limit_result limit_run(struct sim *s, double dt, double share)
     struct limit_result best = {HUGE_VAL, -1};
     if (run->wall_contacts) {
         wall_contacts_set_step(run->wall_contacts, s->step);
-        if (run->features.triangle && run->wall_contacts->now.n > 0)
+        if (run->features.joined && run->wall_contacts->now.n > 0)
             wall_contacts_select(run->wall_contacts, run->particles);
     }
     if (run->particles->n_owned > 0) {

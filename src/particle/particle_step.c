@@ -53,7 +53,7 @@ static void launch_walls(struct sim *s)
     struct particle_run *run = s->particle;
     struct wall_contacts *w = run->wall_contacts;
     if (!w || w->now.n == 0) return;
-    if (run->features.triangle) wall_contacts_select(w, run->particles);
+    if (run->features.joined) wall_contacts_select(w, run->particles);
     launch_set_count(run->wall_force, "n_candidate", w->now.n);
     launch_run(run->wall_force, w->now.n);
 }

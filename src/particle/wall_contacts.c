@@ -110,7 +110,7 @@ struct wall_contacts *wall_contacts_create(const struct wall_setup *setup)
     w->carry = launch_create(setup->program, "wall_carry");
     w->leave = launch_create(setup->program, "wall_leave");
     w->copy = launch_create(setup->program, "pose_copy");
-    w->keep_launch = w->features->triangle ? launch_create(setup->program, "wall_keep") : NULL;
+    w->keep_launch = w->features->joined ? launch_create(setup->program, "wall_keep") : NULL;
     launch_bind_buffer(w->copy, "batch", &w->batch);
     launch_bind_buffer(w->copy, "pose", &w->pose);
     launch_set_int(w->copy, "n", w->walls->n_wall * POSE_WIDTH);
@@ -211,7 +211,7 @@ static void reserve_contacts(struct wall_contacts *w)
     size_t real = particles_real(w->features), capacity = (size_t)l->capacity;
     buffer_reserve(&l->candidate, capacity * sizeof(cl_int));
     buffer_reserve(&l->element, capacity * sizeof(cl_int));
-    if (w->features->triangle) {
+    if (w->features->joined) {
         buffer_reserve(&w->keep, capacity * real);
         buffer_reserve(&w->partner, capacity * sizeof(cl_int));
         buffer_reserve(&w->near, capacity * 4 * particles_preal(w->features));

@@ -33,7 +33,7 @@ struct wall_contacts {
     /* int [n_block + 1]: first primitive of each block; preal [n_block][6]: its box */
     struct buffer block_begin, block_bounds;
     int n_block;
-    struct buffer keep, partner, near; /* of wall_keep.cl; only with triangles */
+    struct buffer keep, partner, near; /* of wall_keep.cl; only where joined */
     struct buffer batch;               /* preal [WALL_BATCH][n_wall][POSE_WIDTH] */
     struct wall_pose *poses;           /* [WALL_BATCH][n_wall] on the host */
     int64_t batch_first;               /* step of the first pose */

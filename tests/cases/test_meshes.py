@@ -32,6 +32,10 @@ def strips(n, slivers):
     return triangles
 
 
+def rectangle(x, width):
+    return {"rectangle": {"center": [x, 0, 0], "normal": [0, 0, 1], "size": [width, 0.1]}}
+
+
 class Meshes(bodies.Case):
     def stl(self, name, triangles):
         with open(self.dir / name, "w") as file:
@@ -59,8 +63,9 @@ class Meshes(bodies.Case):
         }
 
     def test_flat(self):
-        """A floor whose triangles meet in a T, lie over each other, or belong to two walls:
-        the impact is that on a plane, to rounding."""
+        """A floor whose triangles meet in a T, lie over each other, or belong to two walls, and one
+        of rectangles side by side, over each other, or on a plane: the impact is that on a plane,
+        to rounding."""
         left = [((-0.1, -0.05, 0), (0, -0.05, 0), (0, 0.05, 0))]
         left += [((-0.1, -0.05, 0), (0, 0.05, 0), (-0.1, 0.05, 0))]
         right = [
@@ -78,6 +83,9 @@ class Meshes(bodies.Case):
             "seam": [self.stl("seam.stl", left + right)],
             "over": [self.stl("over.stl", left + right + over)],
             "walls": [self.stl("left.stl", left), self.stl("right.stl", right)],
+            "beside": [rectangle(-0.05, 0.1), rectangle(0.05, 0.1)],
+            "overlap": [rectangle(-0.04, 0.1), rectangle(0.04, 0.1)],
+            "on a plane": [plane, rectangle(0.05, 0.1)],
         }
         places = [-2e-3, -1e-3, -5e-4, -1e-4, -1e-6, 1e-6, 1e-4, 5e-4, 1e-3]
         contact = {"normal": {"law": "linear", "stiffness": 1e4, "restitution": 0.5}}
@@ -93,7 +101,7 @@ class Meshes(bodies.Case):
             )
             found[name] = state.v
         self.below("v_z against restitution", abs(found["plane"][:, 2] - 0.25).max(), 1e-3)
-        for name in ("seam", "over", "walls"):
+        for name in [name for name in floors if name != "plane"]:
             self.below(name, abs(found[name] - found["plane"]).max(), 1e-9)
 
     def swing(self, triangles, step):

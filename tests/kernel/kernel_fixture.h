@@ -56,6 +56,7 @@ static inline struct features fixture_features(void)
         .rectangle = WITH_RECTANGLE,
         .cylinder = WITH_CYLINDER,
         .triangle = WITH_TRIANGLE,
+        .joined = WITH_JOINED,
         .moving = WITH_MOVING,
         .pair = law,
         .wall = WITH_WALLS ? law : none};

@@ -254,11 +254,11 @@ static int giver_of(const struct crowd *c, const struct found *f, int e, int t, 
     struct wall_closest own = closest_of(c, e, f->candidate[t]), other;
     preal own_radius = c->element[e].radius, best = 0;
     int giver = -1;
-    if (walls->features[6 * f->candidate[t]] < 0 || state[t] != 0 ||
+    if (!reference_is_flat(walls, f->candidate[t]) || state[t] != 0 ||
         !reference_acts(minimum, n, f->candidate[t], own_radius))
         return -1;
     for (int s = f->begin[e]; s < f->begin[e + 1]; s++) {
-        if (state[s] == 0 || walls->features[6 * f->candidate[s]] < 0 ||
+        if (state[s] == 0 || !reference_is_flat(walls, f->candidate[s]) ||
             reference_acts(minimum, n, f->candidate[s], own_radius))
             continue;
         other = closest_of(c, e, f->candidate[s]);

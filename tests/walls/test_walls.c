@@ -142,10 +142,56 @@ static void test_messages(void **unused)
     scene_errors_free(&errors);
 }
 
+static struct wall rectangle(double x, double z, double normal_x, double half)
+{
+    struct wall wall = scratch_wall(SURFACE_RECTANGLE);
+    double length = sqrt(1 + normal_x * normal_x);
+    wall.point[0] = x;
+    wall.point[2] = z;
+    wall.normal[0] = normal_x / length;
+    wall.normal[2] = 1 / length;
+    wall.size[0] = wall.size[1] = 2 * half;
+    return wall;
+}
+
+/* Two walls, of which the second may be a plane, in either order. */
+static void check_flush(struct wall a, struct wall b, bool expected)
+{
+    for (int order = 0; order < 2; order++) {
+        struct scene_errors errors = {0};
+        struct wall wall[2] = {order ? b : a, order ? a : b};
+        struct scene scene = scratch_scene(wall, 2);
+        struct walls *walls = walls_create(&scene, &errors);
+        assert_non_null(walls);
+        assert_int_equal(walls_flush(walls), expected);
+        walls_free(walls);
+    }
+}
+
+static void flush(void **unused)
+{
+    (void)unused;
+    struct wall floor = rectangle(0, 0, 0, 1), plane = scratch_wall(SURFACE_PLANE);
+    check_flush(floor, rectangle(2, 0, 0, 1), true);      /* side by side */
+    check_flush(floor, rectangle(1.5, 0, 0, 1), true);    /* over each other */
+    check_flush(floor, rectangle(0, 1e-7, 0, 0.1), true); /* one within the other */
+    check_flush(floor, rectangle(2.01, 0, 0, 1), false);  /* a gap */
+    check_flush(floor, rectangle(2, 0.01, 0, 1), false);  /* a step */
+    check_flush(floor, rectangle(0, 0, 0.01, 1), false);  /* it crosses */
+    check_flush(floor, plane, true);
+    check_flush(plane, plane, false);
+    struct wall gate = rectangle(7, 0, 0, 1); /* it slides in, or may */
+    gate.velocity[0] = -1;
+    check_flush(floor, gate, true);
+    gate = rectangle(7, 2, 0, 1);
+    gate.velocity[0] = -1;
+    check_flush(floor, gate, false);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_axes), cmocka_unit_test(test_order),
-        cmocka_unit_test(test_box_faces_inwards), cmocka_unit_test(test_sharing),
-        cmocka_unit_test(test_messages)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(flush), cmocka_unit_test(test_axes),
+        cmocka_unit_test(test_order), cmocka_unit_test(test_box_faces_inwards),
+        cmocka_unit_test(test_sharing), cmocka_unit_test(test_messages)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -31,6 +31,11 @@ static bool is_triangle(const struct walls *walls, int primitive)
     return walls->features[6 * primitive] >= 0;
 }
 
+bool reference_is_flat(const struct walls *walls, int primitive)
+{
+    return wall_is_flat((int)walls->primitive[WALL_PRIMITIVE_WIDTH * primitive + 11]);
+}
+
 /* What the candidates are seen with. */
 struct sight {
     const struct walls *walls;
@@ -68,8 +73,8 @@ static bool is_minimum(const struct sight *sight, const int *candidate, int n,
     for (int s = 0; s < n; s++)
         if (s != t && hides(sight, candidate[s], all[s], candidate[t], all[t])) return false;
     for (int k = 0; k < n_kept; k++)
-        if (is_triangle(sight->walls, candidate[t]) &&
-            is_triangle(sight->walls, kept[k].primitive) &&
+        if (reference_is_flat(sight->walls, candidate[t]) &&
+            reference_is_flat(sight->walls, kept[k].primitive) &&
             all[t].distance < (preal)1.5 * sight->radius &&
             wall_coincides(kept[k].closest, all[t], sight->radius))
             return false;

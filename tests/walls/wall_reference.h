@@ -21,6 +21,9 @@ struct reference_contact {
 int reference_contacts(const struct walls *walls, const struct wall_pose *pose, const double x[3],
     double radius, const int *candidate, int n_candidate, struct reference_contact *out);
 
+/* Whether a primitive is a plane, a rectangle or a triangle. */
+bool reference_is_flat(const struct walls *walls, int primitive);
+
 /* Whether that primitive is one of the n contacts and touches a sphere. */
 bool reference_acts(const struct reference_contact *contact, int n, int primitive, preal radius);
 
