@@ -30,9 +30,26 @@ FILE *files_input(const char *path)
     return NULL;
 }
 
+bool files_is_ordinary(const char *path)
+{
+    struct stat status;
+    return stat(path, &status) != 0 || S_ISREG(status.st_mode) || S_ISDIR(status.st_mode);
+}
+
+/* Without waiting for whoever writes into a pipe. */
+static FILE *open_ordinary(const char *path)
+{
+    if (!files_is_ordinary(path)) {
+        errno = ENOTSUP;
+        return NULL;
+    }
+    int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    return fd < 0 ? NULL : fdopen(fd, "rb");
+}
+
 char *files_read(const char *path, size_t *n, char error[FILES_ERROR_SIZE])
 {
-    FILE *file = files_input(path);
+    FILE *file = open_ordinary(path);
     if (!file) {
         failed(error, "open", path);
         return NULL;

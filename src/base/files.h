@@ -10,10 +10,15 @@
 enum { FILES_ERROR_SIZE = 512 };
 
 /* The whole file, NUL-terminated (not counted in `n`), in fresh memory owned by the caller; NULL
- * and `error` on failure. */
+ * and `error` on failure, or where it is a pipe or a device: for files that a run has written. */
 char *files_read(const char *path, size_t *n, char error[FILES_ERROR_SIZE]);
 
-/* Opens a file for reading; NULL and errno. What never ends, such as /dev/zero, is not opened. */
+/* Whether to open it neither waits, as for a pipe that nobody writes into, nor does anything else,
+ * as a device may: an ordinary file, a folder (reading of which is an error), or nothing. */
+bool files_is_ordinary(const char *path);
+
+/* Opens a file for reading, and waits for whoever writes into a pipe; NULL and errno. What never
+ * ends, such as /dev/zero, is not opened. */
 FILE *files_input(const char *path);
 
 /* Whether an ordinary file, not a link, is there and begins with `text`. */

@@ -137,7 +137,7 @@ bool kernel_cache_has(const struct device *dev, uint64_t key)
 {
     if (!is_shared(dev)) return false;
     char mark[MARK_SIZE] = "", *path = path_of(dev, key);
-    int file = open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+    int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOFOLLOW);
     if (file >= 0) {
         read_mark(file, mark);
         close(file);

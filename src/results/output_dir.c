@@ -304,10 +304,10 @@ static bool remove_replaced(const struct output_request *request, struct outcome
     return ok;
 }
 
-static void create(const struct output_request *request, const char *scene, size_t n_scene,
-    struct outcome *outcome)
+static void create(const struct output_request *request, struct outcome *outcome)
 {
-    const char *dir = request->dir;
+    const char *dir = request->dir, *scene = request->scene;
+    size_t n_scene = request->n_scene;
     if (!make_folders(dir, outcome) || !lock(dir, outcome)) return;
     /* the latter: a run that was killed before its first frame */
     bool is_ours_already = holds_results(dir) || log_is_ours(dir);
@@ -335,14 +335,7 @@ void output_dir_create(const struct comm *comm, const struct output_request *req
      * run */
     signal(SIGXFSZ, SIG_IGN);
     struct outcome outcome = {0, ""};
-    if (comm->rank == 0) {
-        size_t n = 0;
-        /* first: it may lie in the very folder that is emptied */
-        char *scene = files_read(request->scene_path, &n, outcome.text);
-        if (scene) create(request, scene, n, &outcome);
-        else outcome.code = EXIT_IO;
-        free(scene);
-    }
+    if (comm->rank == 0) create(request, &outcome);
     comm_bcast(comm, &outcome, sizeof outcome, 0);
     if (outcome.code) fail_stop_together(outcome.code, "%s", outcome.text);
 }

@@ -7,9 +7,10 @@
 
 struct output_request {
     const char *dir;
-    bool force;                 /* replace what a run before, or somebody else, has left */
-    bool trace;                 /* trace.json will be written */
-    const char *scene_path;     /* copied to scene.yaml */
+    bool force;        /* replace what a run before, or somebody else, has left */
+    bool trace;        /* trace.json will be written */
+    const char *scene; /* [n_scene] text of scene.yaml; NULL for a run that goes on */
+    size_t n_scene;
     const char *resolved;       /* text of resolved.yaml */
     const char *const *measure; /* [n_measure] names: the CSV files of this run */
     int n_measure;

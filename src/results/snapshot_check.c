@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/files.h"
 #include "comm/fail.h"
 #include "h5_check.h"
 
@@ -136,6 +137,7 @@ char *snapshot_walk(struct snapshot_walk *w, const char *path)
 {
     H5E_auto2_t print;
     void *print_data;
+    if (!files_is_ordinary(path)) return fail_strdup("no ordinary file");
     /* frames are whole once they have their name, and some file systems know no locks */
     setenv("HDF5_USE_FILE_LOCKING", "FALSE", 0);
     /* HDF5 1.10 loses count of a damaged file, and would complain on stderr when the program

@@ -50,7 +50,7 @@ struct outputs *output_create(struct sim *s)
     const char **name = fail_alloc((size_t)s->scene->n_measure * sizeof *name);
     for (int i = 0; i < s->scene->n_measure; i++) name[i] = s->scene->measure[i].name;
     struct output_request request = {s->options->dir, s->options->force, s->options->trace,
-        s->scene->path, s->scene->resolved, name, s->scene->n_measure};
+        s->scene->given, s->scene->n_given, s->scene->resolved, name, s->scene->n_measure};
     if (s->from) measures_check(s);
     if (s->from) output_dir_resume(s->comm, &request, s->from->index);
     else output_dir_create(s->comm, &request);

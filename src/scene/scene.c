@@ -53,6 +53,7 @@ void scene_free(struct scene *scene)
     free(scene->path);
     free(scene->name);
     free(scene->title);
+    free(scene->given);
     free(scene->resolved);
     scene_errors_free(&scene->notes);
     free(scene);

@@ -281,6 +281,9 @@ struct scene {
     struct output output;
     struct measure *measure;
     int n_measure;
+    /* the file's text [n_given] as it is; NULL of a scene that was read from memory */
+    char *given;
+    size_t n_given;
     /* the scene with all defaults, as YAML text that reads back to the same scene */
     char *resolved;
     unsigned long hash;        /* of the resolved text */

@@ -93,8 +93,12 @@ struct scene *scene_read(
     size_t n;
     char *text = read_file(path, &n, errors);
     struct scene *scene = text ? scene_read_text(path, text, n, set, n_set, errors) : NULL;
-    free(text);
-    if (!scene) return NULL;
+    if (!scene) {
+        free(text);
+        return NULL;
+    }
+    scene->given = text;
+    scene->n_given = n;
     int before = errors->n;
     check_read_back(scene, errors);
     if (errors->n == before) return scene;

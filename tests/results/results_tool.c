@@ -12,6 +12,7 @@
 #include <string.h>
 #include <sys/resource.h>
 
+#include "base/files.h"
 #include "comm/fail.h"
 #include "frame_fixture.h"
 #include "results/h5_write.h"
@@ -52,9 +53,14 @@ static void write_column(const struct comm *comm, int n, char **arg)
 static void folder(const struct comm *comm, int n, char **arg)
 {
     const char *const measure[] = {"outflow"};
-    struct output_request request = {arg[0], n > 2 && !strcmp(arg[2], "--force"), false, arg[1],
-        "title: resolved\nmeasure: [{name: energy}]\n", measure, 1};
+    char error[FILES_ERROR_SIZE];
+    size_t n_scene = 0;
+    char *scene = files_read(arg[1], &n_scene, error);
+    if (!scene) fail_stop_together(EXIT_USAGE, "%s", error);
+    struct output_request request = {arg[0], n > 2 && !strcmp(arg[2], "--force"), false, scene,
+        n_scene, "title: resolved\nmeasure: [{name: energy}]\n", measure, 1};
     output_dir_create(comm, &request);
+    free(scene);
 }
 
 /* limited: the file that no byte can be written to; NULL: none. */

@@ -140,6 +140,34 @@ class Owned(Files):
             os.rename(path + ".kept", path)
         self.good("run", "s.yaml", "-o", "d", "--force")
 
+    def test_pipe_in_the_way(self):
+        """Nobody writes into these: who opens them to read waits for ever."""
+        self.good("run", "s.yaml", "-o", "d", "--steps", "50")
+        for name, code in (
+            ("m.csv", 6),
+            ("frame_000001.hdf", 0),
+            ("frames.hdf.series", 0),
+            ("resolved.yaml", 0),
+            ("log.txt", 6),
+            ("run.json", 0),
+        ):
+            shutil.copytree(os.path.join(self.dir, "d"), os.path.join(self.dir, "e"))
+            os.remove(os.path.join(self.dir, "e", name))
+            os.mkfifo(os.path.join(self.dir, "e", name))
+            run = self.call("resume", "e", "--steps", "60")
+            self.assertEqual(run.code, code, (name, run.err))
+            shutil.rmtree(os.path.join(self.dir, "e"))
+
+    def test_scene_from_a_pipe(self):
+        """It can be read once only."""
+        os.mkfifo(os.path.join(self.dir, "pipe"))
+        with open(os.path.join(self.dir, "scene.txt"), "w") as file:
+            file.write(SCENE)
+        writer = subprocess.Popen(["sh", "-c", "cat scene.txt > pipe"], cwd=self.dir)
+        self.good("run", "pipe", "-o", "d", "--steps", "1")
+        writer.wait()
+        self.assertEqual(self.text("d/scene.yaml"), SCENE)
+
     def test_list_of_frames_grows(self):
         """The list is continued in its place, not written anew for each frame."""
         self.good("run", "s.yaml", "-o", "d", "--set", "output.every=1e-5", "--steps", "40")
