@@ -37,11 +37,14 @@ class Job:
     """A run under way, in a process group of its own."""
 
     def __init__(self, folder, scene, ranks, *args, name="out", program=None, **more):
+        """scene: its path; None: goes on with what is in the folder."""
         self.dir, self.ranks = os.path.join(folder, name), ranks
         self.log = os.path.join(folder, "stderr.txt")
-        shutil.rmtree(self.dir, True)
+        verb = ("run", scene, "-o", self.dir) if scene else ("resume", self.dir)
+        if scene:
+            shutil.rmtree(self.dir, True)
         with open(self.log, "w") as err:
-            words = parallel_runs.command(ranks, "run", scene, "-o", self.dir, "--quiet", *args)
+            words = parallel_runs.command(ranks, *verb, "--quiet", *args)
             words[words.index(parallel_runs.DEMOCLES)] = program or parallel_runs.DEMOCLES
             self.process = subprocess.Popen(
                 words,

@@ -1,13 +1,15 @@
 #!/usr/bin/python3
-"""Requests to stop at any moment, the set-up above all: a frame and exit code 75, or the end of a
-program that has not begun yet; the run that goes on is the one that was never stopped. Own
-arguments: results_tool, the tests. DEMOCLES_SEED changes what is random."""
+"""Signals at any moment, the set-up above all: of those that ask to stop, a frame and exit code 75,
+or the end of a program that has not begun yet; of one that kills, whole frames. The run that goes
+on, once or more often, is the one that was never stopped. Own arguments: results_tool, the tests.
+DEMOCLES_SEED changes what is random."""
 import os
 import random
 import signal
 import sys
 import time
 
+import lattice_runs
 import parallel_runs
 import resume_runs
 import robust_jobs
@@ -19,21 +21,42 @@ SIGNALS = (signal.SIGUSR1, signal.SIGINT, signal.SIGTERM)
 class Stopped(resume_runs.Case):
     def setUp(self):
         super().setUp()
-        self.path = self.put(robust_jobs.bed(frame_every=100))
-        self.digest = self.good_run(self.path, 1, "--steps", str(STEPS)).record()["digest"]
-        self.counts = {"stopped": 0, "complete": 0, "not begun": 0}
+        self.counts = {"stopped": 0, "complete": 0, "not begun": 0, "killed": 0}
+        self.particles()
 
     def tearDown(self):
         print(f"{self.id()}: {self.counts}", file=sys.stderr)
 
-    def goes_on(self, folder, ranks=1):
-        run = self.resume(folder, ranks, "--steps", str(STEPS))
-        self.assertEqual(run.record()["digest"], self.digest)
+    def particles(self):
+        self.use(robust_jobs.bed(frame_every=100))
 
-    def stop(self, number, ranks, delay=None, place=None):
-        """After some seconds, or when the folder has this file."""
-        what = f"{signal.Signals(number).name} on {ranks} after {delay} s, {place}"
-        job = self.job(self.path, ranks, "--steps", str(STEPS), name="stopped")
+    def lattice(self):
+        """A bar that breaks."""
+        scene = lattice_runs.torn()
+        scene["output"] = {"every": 2e-5}
+        self.use(scene)
+
+    def use(self, scene):
+        self.path = self.put(scene)
+        whole = self.good_run(self.path, 1, "--steps", str(STEPS), name="whole")
+        self.digest = whole.record()["digest"]
+
+    def goes_on(self, folder, ranks=1):
+        """From the newest frame, or from the start where none was written."""
+        if self.whole(folder):
+            run = self.resume(folder, ranks, "--steps", str(STEPS))
+        else:
+            args = ("--steps", str(STEPS), "--force")
+            run = self.good_run(self.path, ranks, *args, name=os.path.basename(folder))
+        self.assertEqual(run.record()["digest"], self.digest)
+        self.assertEqual(self.leftovers(folder), [])
+
+    def stop(self, number, ranks, delay=None, place=None, again=False):
+        """After some seconds, or when the folder has this file. again: a run that goes on. Returns
+        the folder, or None where there is none yet."""
+        what = f"{signal.Signals(number).name} on {ranks} after {delay} s, {place}, again: {again}"
+        scene = None if again else self.path
+        job = self.job(scene, ranks, "--steps", str(STEPS), name="stopped")
         if place:
             path, end = os.path.join(job.dir, place), time.monotonic() + robust_jobs.SOON
             while not os.path.exists(path) and time.monotonic() < end:
@@ -46,31 +69,49 @@ class Stopped(resume_runs.Case):
             except (AssertionError, ProcessLookupError):  # ranks that are not there yet
                 time.sleep(0.01)
         code = job.end()
-        if not os.path.exists(job.dir):
-            self.counts["not begun"] += 1
-            return
-        self.assertIn(code, (0, 75), f"{what}: {job.err()}")
         self.assertEqual(job.errors(), [], what)
-        self.assertEqual(
-            [name for name in os.listdir(job.dir) if name.endswith((".cl", ".tmp"))], [], what
-        )
-        self.counts["stopped" if code == 75 else "complete"] += 1
-        self.whole(job.dir)
-        self.goes_on(job.dir)
+        if not os.path.exists(job.dir) or (again and code not in (0, 75)):
+            self.assertIn(code, (-number, 128 + number, 1, 75), f"{what}: {job.err()}")
+            self.counts["not begun"] += 1
+        elif number == signal.SIGKILL and code != 0:
+            self.assertIn(code, (-signal.SIGKILL, 128 + signal.SIGKILL), f"{what}: {job.err()}")
+            self.counts["killed"] += 1
+        else:
+            self.assertIn(code, (0, 75), f"{what}: {job.err()}")
+            self.assertEqual(
+                [name for name in os.listdir(job.dir) if name.endswith((".cl", ".tmp"))], [], what
+            )
+            self.counts["stopped" if code == 75 else "complete"] += 1
+        return job.dir if os.path.exists(job.dir) else None
+
+    def stop_often(self, n):
+        """Any moment of set-up, loop and output, on one rank and two; of a run that goes on too."""
+        chance = random.Random(os.environ.get("DEMOCLES_SEED", "7"))
+        places = (None, None, "log.txt", "resolved.yaml", "frame_000000.hdf", "frame_000001.hdf")
+        for _ in range(n):
+            signals = (*SIGNALS, signal.SIGKILL)
+            ranks = chance.choice((1, 1, 2))
+            folder = self.stop(
+                chance.choice(signals), ranks, chance.random(), chance.choice(places)
+            )
+            if folder and self.whole(folder) and chance.random() < 0.4:
+                self.stop(chance.choice(signals), ranks, 2 * chance.random(), again=True)
+            if folder:
+                self.goes_on(folder, chance.choice((1, 1, 2)))
+        self.assertGreater(self.counts["stopped"] + self.counts["killed"], n // 3)
 
     def test_set_up(self):
         """Each of the signals, while kernels are built: the log is there, no frame yet."""
         for number, delay in zip(SIGNALS, (0.05, 0.15, 0.0)):
-            self.stop(number, 1, delay, "log.txt")
-        self.assertEqual(self.counts, {"stopped": 3, "complete": 0, "not begun": 0})
+            self.goes_on(self.stop(number, 1, delay, "log.txt"))
+        self.assertEqual(self.counts["stopped"], 3)
 
     def test_hundred(self):
-        """Any moment of set-up, loop and output, on one rank and two; of a run that goes on too."""
-        chance = random.Random(os.environ.get("DEMOCLES_SEED", "7"))
-        for k in range(100):
-            place = chance.choice((None, None, "log.txt", "resolved.yaml", "frame_000000.hdf"))
-            self.stop(chance.choice(SIGNALS), chance.choice((1, 1, 2)), chance.random(), place)
-        self.assertGreater(self.counts["stopped"], 30)
+        self.stop_often(100)
+
+    def test_hundred_lattice(self):
+        self.lattice()
+        self.stop_often(100)
 
 
 if __name__ == "__main__":
