@@ -23,6 +23,13 @@ static int kinds_on(const struct lattice_cells *cells, int grid, int *one)
     return n;
 }
 
+static bool has_shares(const struct lattice_cells *cells, int64_t first, int64_t end)
+{
+    bool any = false;
+    for (int64_t i = first; i < end && cells->share; i++) any |= cells->share_of[i] != 0;
+    return any;
+}
+
 /* Cells first to end - 1, all those of a grid, of several materials or with shares. */
 static double mixed_grid(const struct scene *scene, const struct lattice_cells *cells,
     int64_t first, int64_t end, const struct link_material *materials)
@@ -49,7 +56,7 @@ static double mixed_grid(const struct scene *scene, const struct lattice_cells *
         .materials = materials,
         .n_material = cells->n_kind,
         .share_of = cells->share_of ? cells->share_of + first : NULL,
-        .share = cells->share};
+        .share = has_shares(cells, first, end) ? cells->share : NULL};
     double largest = lattice_limit_body(&body, ROUNDS);
     free(neighbour);
     free(upper);
@@ -66,7 +73,7 @@ double lattice_frequency_largest(const struct scene *scene, const struct lattice
     for (int g = 0; g < cells->n_grid; g++, first = end) {
         int kind = 0, n = kinds_on(cells, g, &kind);
         for (end = first; end < cells->n && cells->kind[cells->kind_of[end]].grid == g;) end++;
-        double own = n == 1 && !cells->share
+        double own = n == 1 && !has_shares(cells, first, end)
                          ? lattice_limit_uniform(
                                (enum link_set)scene->lattice.law, materials[kind], cells->grid[g].h)
                          : mixed_grid(scene, cells, first, end, materials);
