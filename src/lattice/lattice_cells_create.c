@@ -78,8 +78,9 @@ static void check_counts(const struct scene *scene, const struct lattice_cells *
         if (cells->n_of_body[b] > 0) continue;
         lattice_fault(scene, errors, body->line, body->column, "bodies[%d]: '%s' has no cell: %s",
             b, body->name,
-            cut[b].span.n > 0 ? "later bodies have taken them all"
-                              : "its shape contains no cell centre");
+            cut[b].n_sliver > 0 ? "it covers less than half of each; take smaller ones"
+            : cut[b].span.n > 0 ? "later bodies have taken them all"
+                                : "its shape contains no cell centre");
     }
     if (cells->n_kind > UINT8_MAX)
         scene_errors_add(
@@ -170,7 +171,7 @@ struct lattice_cells *lattice_cells_create(const struct scene *scene, struct sce
     }
     cells->share = list.share;
     cells->n_share = list.n_share;
-    lattice_shares_prune(cells);
+    lattice_shares_prune(cells, cut);
     if (errors->n == before) check_counts(scene, cells, cut, errors);
     cells->fit = fail_alloc((size_t)scene->n_body * sizeof *cells->fit);
     for (int b = 0; b < scene->n_body; b++) {

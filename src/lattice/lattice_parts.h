@@ -23,6 +23,7 @@ struct lattice_cut {
     struct lattice_span span; /* of the cells it has cut, before others took some */
     bool is_curved;           /* its cells have shares */
     double covered;           /* volume of its cells, in whole ones; of a curved one alone */
+    int64_t n_sliver;         /* cells left out, since they hang on slivers alone */
 };
 
 /* One cell: place packed as z, y, x of 21 bits each, so that keys sort as cells do. */
@@ -60,7 +61,7 @@ uint8_t *lattice_cut_fill(const struct lattice_cut *cut, bool corners);
 void lattice_cover_append(struct lattice_cut *cut, int n, int b, struct lattice_list *list);
 
 /* Cells have places and measured shares, no links: takes out what hangs on nothing. */
-void lattice_shares_prune(struct lattice_cells *cells);
+void lattice_shares_prune(struct lattice_cells *cells, struct lattice_cut *cut);
 /* Links are known: one share for both ends of each, masses. */
 void lattice_shares_settle(struct lattice_cells *cells);
 

@@ -50,12 +50,15 @@ static double share_of_link(const struct lattice_cells *cells, int64_t i, int64_
 }
 
 /* The cells that keep[] says move together. */
-static void keep_cells(struct lattice_cells *cells, const bool *keep)
+static void keep_cells(struct lattice_cells *cells, const bool *keep, struct lattice_cut *cut)
 {
     int64_t n = 0;
     for (int64_t i = 0; i < cells->n; i++) {
         if (!keep[i]) {
-            cells->n_of_body[cells->body[i]]--;
+            int b = cells->body[i];
+            cells->n_of_body[b]--;
+            cut[b].covered -= lattice_cells_share(cells, i)->volume;
+            cut[b].n_sliver++;
             continue;
         }
         memcpy(cells->at[n], cells->at[i], sizeof *cells->at);
@@ -66,7 +69,7 @@ static void keep_cells(struct lattice_cells *cells, const bool *keep)
     cells->n = n;
 }
 
-void lattice_shares_prune(struct lattice_cells *cells)
+void lattice_shares_prune(struct lattice_cells *cells, struct lattice_cut *cut)
 {
     if (cells->n_share <= 1) {
         free(cells->share);
@@ -88,7 +91,7 @@ void lattice_shares_prune(struct lattice_cells *cells)
                 changes |= keep[i];
             }
     }
-    keep_cells(cells, keep);
+    keep_cells(cells, keep, cut);
     free(keep);
     free(beside);
 }

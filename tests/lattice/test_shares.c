@@ -83,6 +83,63 @@ static void tilted_tube(void **state)
     cut_free(cut);
 }
 
+/* A mesh of a box with these lengths, whose corner is at 0: turned by q, all of it above 0. */
+static void write_box(struct fixture *f, const double size[3], double turn)
+{
+    static const int face[12][3] = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5},
+        {0, 5, 4}, {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    double c = cos(turn), s = sin(turn);
+    char *path = fail_format("%s/box.stl", f->folder);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fprintf(file, "solid box\n");
+    for (int k = 0; k < 12; k++) {
+        fprintf(file, "facet normal 0 0 0\nouter loop\n");
+        for (int v = 0; v < 3; v++) {
+            double x = (face[k][v] & 1) * size[0], y = (face[k][v] >> 1 & 1) * size[1],
+                   z = (face[k][v] >> 2) * size[2], u = c * x - s * y, w = s * x + c * y;
+            fprintf(file, "vertex %.17g %.17g %.17g\n", u, c * w - s * z, s * w + c * z);
+        }
+        fprintf(file, "endloop\nendfacet\n");
+    }
+    fprintf(file, "endsolid box\n");
+    fclose(file);
+    free(path);
+}
+
+#define MESH CURVED(BODY("box", "a", "0.1", "stl: box.stl"))
+
+/* A box as a mesh is the box, and turned it keeps its volume. */
+static void mesh(void **state)
+{
+    const double size[3] = {1, 0.7, 0.5};
+    write_box(*state, size, 0);
+    struct cut cut = cut_scene(*state, MESH);
+    assert_int_equal(cut.cells->n, 10 * 7 * 5);
+    near("mass", whole_of(cut.cells).mass * 1e-3, 0.35, 1e-3);
+    for (int64_t i = 0; i < cut.cells->n; i++)
+        assert_true(fabs(lattice_cells_share(cut.cells, i)->volume - 1) < 1e-3);
+    cut_free(cut);
+    for (double turn = 0.2; turn < 0.9; turn += 0.3) {
+        write_box(*state, size, turn);
+        cut = cut_scene(*state, MESH);
+        near("mass, turned", whole_of(cut.cells).mass * 1e-3, 0.35, 2e-3);
+        check_links(cut.cells);
+        cut_free(cut);
+    }
+}
+
+/* What is thinner than the cells nowhere covers half of one: slivers that hang on slivers alone,
+ * which are no body. */
+static void sheet(void **state)
+{
+    const double thin[3] = {1, 0.7, 0.03};
+    write_box(*state, thin, 0.5);
+    cut_expect_one(*state, MESH,
+        "scene.yaml:5:4: bodies[0]: 'box' has no cell: it covers less than half of each; take "
+        "smaller ones");
+}
+
 /* What fills a hole leaves no cut; a hole in it does. Boxes have whole cells, aligned or not. */
 static void filled(void **state)
 {
@@ -137,7 +194,7 @@ static void pressure(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        CUT_TEST(sphere), CUT_TEST(tilted_tube), CUT_TEST(filled), CUT_TEST(pressure)};
+    const struct CMUnitTest tests[] = {CUT_TEST(sphere), CUT_TEST(tilted_tube), CUT_TEST(mesh),
+        CUT_TEST(sheet), CUT_TEST(filled), CUT_TEST(pressure)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
