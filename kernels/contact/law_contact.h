@@ -1,5 +1,5 @@
 /* One contact, one step: from kinematics, parameters and history to the force, torques and energies
- * at t^{n+1}.
+ * at t^{n+1}, which is the t^n of run/step.h: the time of the forces of this step.
  *
  * Straight line: no loop, no early return, selects instead of branches, so that a kernel with one
  * work-item per interaction vectorises. A feature that a scene does not use (WITH_ flag 0) leaves

@@ -1,4 +1,4 @@
-/* Whether a link breaks, decided once per step from the state at its end. The link is always seen
+/* Whether a link breaks, decided once per step from the state at its start. The link is always seen
  * from its lower cell, so both ends, and all ranks that hold it, decide alike. Compression never
  * breaks.
  *

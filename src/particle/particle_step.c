@@ -1,5 +1,6 @@
-/* One step of the particle method. The host only enqueues, except in ghosts_swap, where it moves
- * messages while the device works, and in watch_vote, where it waits for a flag of the step before.
+/* One step of the particle method. The host only enqueues, except in ghosts_swap and assigned_swap,
+ * where it moves messages while the device works, and in watch_vote, where it waits for a flag of
+ * the step before.
  *
  *   forces at t^n    interior pairs and walls beside the exchange, then pairs with ghosts; where
  *                    those are assigned to one side (assigned.h) some interior pairs are left for

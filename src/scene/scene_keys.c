@@ -68,7 +68,8 @@ const struct scene_key scene_keys[] = {
     .text = "coefficient that gives the ratio; mass: alpha = 4 pi f ratio; link: eta = ratio/(pi "
         "f), which at a low frequency reduces the critical time step much"},
 {"materials.NAME.strength", KEY_MAP, .only = "lattice", .mark = HAS(material, has_strength),
-    .text = "strength of the links; between two materials the weaker one counts"},
+    .text = "strength of the links; between two materials the weaker one counts, with criterion "
+            "principal the cell that fails first"},
 {"materials.NAME.strength.tension", KEY_NUMBER, ONE_OF, UNIT_PRESSURE, .range = ABOVE_ZERO,
     .special = "none", .special_value = HUGE_VAL, .at = AT(material, tension),
     .text = "tensile strength: normal stress on a face at which its link breaks, or largest "
