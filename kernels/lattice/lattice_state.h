@@ -87,6 +87,12 @@ LAW struct link_constants lattice_constants_cut(
     return k;
 }
 
+/* Covered share of a face with a link [1]. */
+LAW real lattice_linked(int face, int links, __global const real *share)
+{
+    return links >> face & 1 ? share[SHARE_FACE + face] : (real)0;
+}
+
 /* A row of the table of cells; `share`: of the table of shares, NULL: whole. */
 LAW struct volume_constants lattice_volume_of(
     __global const real *p, __global const real *share, int links)
@@ -102,8 +108,12 @@ LAW struct volume_constants lattice_volume_of(
         c.missing = (real)volume_missing(links);
         if (share) {
             c.missing = (real)6 * c.share;
-            for (int f = 0; f < 6; f++)
-                c.missing -= links >> f & 1 ? share[SHARE_FACE + f] : (real)0;
+            c.missing -= lattice_linked(0, links, share);
+            c.missing -= lattice_linked(1, links, share);
+            c.missing -= lattice_linked(2, links, share);
+            c.missing -= lattice_linked(3, links, share);
+            c.missing -= lattice_linked(4, links, share);
+            c.missing -= lattice_linked(5, links, share);
         }
     }
     return c;

@@ -16,7 +16,9 @@ int main(int argc, char **argv)
     if (argc < 4) return EXIT_USAGE;
     o.position_is_float = !strcmp(argv[2], "single");
     o.real_is_float = o.position_is_float || !strcmp(argv[2], "mixed");
+    bool is_cut = false;
     for (int i = 3; i < argc; i++) {
+        is_cut |= !strcmp(argv[i], "shares");
         o.turn |= !strcmp(argv[i], "turn");
         if (!strcmp(argv[i], "volume")) m.poisson = 0.3;
         if (!strcmp(argv[i], "rk4")) o.scheme = LATTICE_RK4;
@@ -29,6 +31,7 @@ int main(int argc, char **argv)
         return 77;
     }
     struct lattice_cells *cells = bodies_create(1, size, 0.01, 1, bodies_block);
+    if (is_cut) bodies_cut(cells);
     struct lattice *l = lattice_create(dev, comm, cells, &o);
     lattice_begin_step(l);
     lattice_advance(l, false);
