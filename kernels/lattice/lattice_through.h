@@ -78,23 +78,29 @@ LAW struct stress lattice_stress_cut(
 }
 
 /* The link that breaks of a cell that fails, as a mask; 0 where none is pulled, or where the cell
- * bears more in this direction (law_principal.h). s: as lattice_stress_of gives it. */
+ * bears more in this direction (law_principal.h). s: as lattice_stress_of gives it; lot: below 0,
+ * the one pulled most. */
 LAW int lattice_principal(struct lattice_through f, struct stress s, struct link_cell c, int links,
-    real inverse, real rise)
+    real inverse, real rise, real lot)
 {
     vec3 d = principal_direction(s),
          world = WITH_TURN ? v3_of_p3(quat_rotate(c.q, p3_of_v3(d))) : d;
     const real pull[6] = {principal_pull(f.x[0], world, -d.x), principal_pull(f.x[1], world, d.x),
         principal_pull(f.y[0], world, -d.y), principal_pull(f.y[1], world, d.y),
         principal_pull(f.z[0], world, -d.z), principal_pull(f.z[1], world, d.z)};
-    real most = 0;
+    real most = 0, sum = 0, passed = 0;
     int link = 0;
     links = principal_runs(s, d, inverse, rise) ? links : 0;
     for (int face = 0; face < 6; face++)
-        if (links >> face & 1 && pull[face] > most) {
-            most = pull[face];
+        if (links >> face & 1 && pull[face] > 0) sum += pull[face];
+    for (int face = 0; face < 6; face++) {
+        real share = links >> face & 1 ? r_max(pull[face], (real)0) : (real)0;
+        if (lot < 0 ? share > most : share > 0 && passed <= lot * sum) {
+            most = share;
             link = 1 << face;
         }
+        passed += share;
+    }
     return link;
 }
 

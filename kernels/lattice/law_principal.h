@@ -10,7 +10,13 @@
  *
  * A strength that stands for a fracture energy depends on d: the layers of cells ahead of a crack
  * lie closer where it is inclined to the grid. It is sigma_c (1 + rise q^2), q = 1 - (d_x^4 + d_y^4
- * + d_z^4) with |d| = 1: 0 along the grid, 1/2 across {110}, 2/3 across {111}. */
+ * + d_z^4) with |d| = 1: 0 along the grid, 1/2 across {110}, 2/3 across {111}.
+ *
+ * A plane of normal d crosses links of normal n in proportion to |n.d|, and a crack that always
+ * takes the largest goes along the grid wherever d is within 45 degrees of an axis. Drawn by lot
+ * (E. Louis, F. Guinea, Europhys. Lett. 3 (1987) 871), a link goes with the probability q over the
+ * sum of all q > 0: the staircase then has the direction of its plane in the mean. The lot is a
+ * function of the cell's place on its grid, so the same on any ranks and devices. */
 #ifndef DEMOCLES_LAW_PRINCIPAL_H
 #define DEMOCLES_LAW_PRINCIPAL_H
 

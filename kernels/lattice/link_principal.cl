@@ -61,12 +61,12 @@ LAW struct principal_cell principal_cell_of(int mixed, struct lattice_view s, si
         int links = LATTICE_LINKS(word_i);                                                         \
         due[i] = going & links ? 0                                                                 \
                                : lattice_principal(c.f, c.s, me, links, inverse[LIMIT(mixed)],     \
-                                     inverse[n_kind + LIMIT(mixed)]);                              \
+                                     inverse[n_kind + LIMIT(mixed)], lot[i]);                      \
     }
 
 /* After link_due (and link_break), before link_sever. inverse [2 n_kind]: 1/sigma_c [1/Pa], then
- * rise [1]; due: of each cell the link that goes with the next step, a mask. A cell that loses a
- * link with this one waits: its stress is about to change. */
+ * rise [1]; lot: law_principal.h; due: of each cell the link that goes with the next step, a mask.
+ * A cell that loses a link with this one waits: its stress is about to change. */
 __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void link_judge(int n,
     __global const int *list, __global const int *info, __global const int *base,
     __global const int *word, int n_run, int n_kind, long plane, __global const preal *x, long x_in,
@@ -78,7 +78,7 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void link_judg
 #if WITH_LOADS
     __global const int *row, __global const real *rows, int at_rows,
 #endif
-    __global const int *fate, __global int *restrict due)
+    __global const real *lot, __global const int *fate, __global int *restrict due)
 {
     if (get_group_id(0) >= (size_t)n) return;
     int run = list[get_group_id(0)], what = info[run], kind = what & (RUN_MIXED - 1);

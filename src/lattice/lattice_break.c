@@ -14,7 +14,7 @@ struct lattice_break {
     struct buffer limit, fate;
     struct program *program_principal; /* NULL: no cell has a limit */
     struct launch *follow, *principal;
-    struct buffer inverse, due;
+    struct buffer inverse, lot, due;
     struct program *program_release; /* NULL: released energy is not asked for */
     struct launch *release;
     struct buffer fresh, released;
@@ -24,6 +24,7 @@ static const struct buffer_spec buffers[] = {
     {"lattice strengths", offsetof(struct lattice_break, limit)},
     {"lattice fates", offsetof(struct lattice_break, fate)},
     {"lattice limits of cells", offsetof(struct lattice_break, inverse)},
+    {"lattice lots", offsetof(struct lattice_break, lot)},
     {"lattice links due", offsetof(struct lattice_break, due)},
     {"lattice fresh breaks", offsetof(struct lattice_break, fresh)},
     {"lattice released", offsetof(struct lattice_break, released)}, {0}};
@@ -82,6 +83,16 @@ static void create_judge(struct lattice_break *b, const struct lattice_cells *ce
     free(limit);
 }
 
+static void put_lots(struct lattice_break *b, const struct lattice_cells *cells)
+{
+    const struct lattice_layout *c = b->l->layout;
+    double *lot = fail_alloc((size_t)c->plane * sizeof *lot);
+    for (int64_t k = 0; k < c->n_owned; k++)
+        lot[c->index[k]] = lattice_features_lot(cells, &b->l->options, c->gid[k]);
+    reals_put(&b->lot, b->l->features.real_is_float, (size_t)c->plane, lot);
+    free(lot);
+}
+
 /* Cells judged by their stress. */
 static void create_principal(struct lattice_break *b, const struct lattice_cells *cells)
 {
@@ -94,6 +105,7 @@ static void create_principal(struct lattice_break *b, const struct lattice_cells
     reals_put(&b->inverse, l->features.real_is_float, 2 * (size_t)l->n_kind, inverse);
     free(inverse);
     free(text);
+    put_lots(b, cells);
     buffer_reserve(&b->due, (size_t)l->layout->plane * sizeof(int32_t));
     buffer_zero(&b->due);
     b->follow = lattice_launch(l, b->program_principal, "link_due", NULL);
@@ -101,7 +113,7 @@ static void create_principal(struct lattice_break *b, const struct lattice_cells
     launch_set_int(b->follow, "n", l->layout->n_run - 2);
     b->principal = lattice_launch(l, b->program_principal, "link_judge", &l->force_list);
     launch_bind_all(b->principal, (const struct launch_binding[]){{"inverse", &b->inverse},
-                                      {"fate", &b->fate}, {"due", &b->due}, {0}});
+                                      {"lot", &b->lot}, {"fate", &b->fate}, {"due", &b->due}, {0}});
     launch_set_int(b->principal, "n", l->layout->n_force);
     launch_bind_buffer(b->sever, "due", &b->due);
 }

@@ -66,6 +66,10 @@ double *lattice_features_limits(const struct lattice_cells *cells, const struct 
  * [n_kind], as kernels/lattice/law_principal.h. */
 double *lattice_features_principal(
     const struct lattice_cells *cells, const struct lattice_options *o);
+/* Where in [0, 1) the lot of cell i falls (kernels/lattice/law_principal.h), below 0 where none is
+ * drawn. */
+double lattice_features_lot(
+    const struct lattice_cells *cells, const struct lattice_options *o, int64_t i);
 /* Shares [n_share][SHARE_WIDTH]. */
 double *lattice_features_shares(const struct lattice_cells *cells, const struct lattice_options *o);
 double *lattice_features_cells(const struct lattice_cells *cells, const struct lattice_options *o);

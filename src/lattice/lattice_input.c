@@ -19,7 +19,7 @@ static struct link_strength strength_of(
     const struct scene *scene, const struct lattice_cells *cells, int kind)
 {
     const struct material *m = &scene->material[cells->kind[kind].material];
-    struct link_strength s = {HUGE_VAL, HUGE_VAL, CRITERION_SUM, 0, 0};
+    struct link_strength s = {HUGE_VAL, HUGE_VAL, CRITERION_SUM, 0, 0, false};
     struct link_material own = lattice_frequency_material(m);
     double h = cells->grid[cells->kind[kind].grid].h;
     bool is_strain = m->plane == PLANE_STRAIN, by_energy = m->energy > 0;
@@ -29,6 +29,7 @@ static struct link_strength strength_of(
             by_energy ? link_constants_principal(own, m->energy, h, is_strain) : m->tension;
         s.principal = isfinite(stress) ? stress : 0;
         s.rise = by_energy ? link_constants_rise() : 0;
+        s.drawn = m->crack_path == PATH_DRAWN;
         return s;
     }
     s.criterion = (int)m->criterion;

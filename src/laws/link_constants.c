@@ -105,8 +105,8 @@ struct link_strength link_constants_weaker(struct link_strength i, struct link_s
     bool is_i = i.tension < j.tension ||
                 (i.tension <= j.tension &&
                     (i.shear < j.shear || (i.shear <= j.shear && i.criterion < j.criterion)));
-    return (struct link_strength){
-        fmin(i.tension, j.tension), fmin(i.shear, j.shear), is_i ? i.criterion : j.criterion, 0, 0};
+    return (struct link_strength){fmin(i.tension, j.tension), fmin(i.shear, j.shear),
+        is_i ? i.criterion : j.criterion, 0, 0, false};
 }
 
 struct link_limits link_constants_limits(struct link_strength strength, double h)

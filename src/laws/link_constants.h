@@ -42,6 +42,7 @@ struct link_strength {
     /* largest principal stress of a cell [Pa], 0: any, and how it rises with its direction [1],
      * kernels/lattice/law_principal.h */
     double principal, rise;
+    bool drawn; /* which link then goes is drawn by lot, else the one that is pulled most */
 };
 
 /* One over what a link bears, for kernels/lattice/law_break.h; 0: anything. */

@@ -31,6 +31,8 @@ enum damping_by { DAMPING_MASS, DAMPING_LINK };
 enum plane { PLANE_STRESS, PLANE_STRAIN };
 /* BREAK_* of kernels/lattice/law_break.h, then that of law_principal.h */
 enum criterion { CRITERION_SUM, CRITERION_LARGEST, CRITERION_STRESS, CRITERION_PRINCIPAL };
+/* Which link of a cell that fails goes: the one pulled most, or by lot. */
+enum crack_path { PATH_GRID, PATH_DRAWN };
 struct material {
     char *name;
     double density; /* [kg/m3] */
@@ -48,6 +50,7 @@ struct material {
     double energy;    /* of fracture [J/m2] */
     enum plane plane; /* state that `energy` is turned into a tension for */
     enum criterion criterion;
+    enum crack_path crack_path; /* criterion principal only */
 };
 
 enum normal_law { NORMAL_LINEAR, NORMAL_HERTZ };

@@ -45,7 +45,8 @@ static void check_damping(struct scene_reader *reader, const struct material *m)
 static void check_strength(struct scene_reader *reader, struct material *m)
 {
     char *path = fail_format("materials.%s.strength", m->name);
-    char *criterion = fail_format("%s.criterion", path), *shear = fail_format("%s.shear", path);
+    char *criterion = fail_format("%s.criterion", path), *shear = fail_format("%s.shear", path),
+         *way = fail_format("%s.path", path);
     if (!scene_issue_is_below(reader, path)) {
         if (!is_given(reader, criterion))
             m->criterion = m->energy > 0 ? CRITERION_LARGEST : CRITERION_STRESS;
@@ -55,10 +56,13 @@ static void check_strength(struct scene_reader *reader, struct material *m)
         if (m->criterion == CRITERION_PRINCIPAL && isfinite(m->shear))
             scene_issue_on(reader, shear,
                 "not with criterion: principal, which breaks shear by its principal stress");
+        if (m->criterion != CRITERION_PRINCIPAL && m->crack_path != PATH_GRID)
+            scene_issue_on(reader, way, "with criterion: principal only");
     }
     free(path);
     free(criterion);
     free(shear);
+    free(way);
 }
 
 static void check_materials(struct scene_reader *reader)

@@ -93,6 +93,11 @@ const struct scene_key scene_keys[] = {
         "the largest of them, or the normal stress at the face's edge, all of which depend on the "
         "direction of the grid; or of a cell its largest principal stress, which does not; "
         "without it stress, beside energy largest"},
+{"materials.NAME.strength.path", KEY_CHOICE, .fallback = "grid", .words = "grid|drawn",
+    .at = AT(material, crack_path),
+    .text = "with criterion principal, the link of a failing cell that breaks: the one pulled "
+        "most, so that cracks prefer to go along the grid; or one drawn by lot, as often as its "
+        "share of the pull, so that cracks turn and branch as the stress says"},
 
 {"contacts", KEY_LIST, .only = "particles", .at = AT(scene, contact),
     .count_at = AT(scene, n_contact), .size = sizeof(struct contact),

@@ -204,8 +204,9 @@ static void judge_cells(struct host *h)
         bool waits = lattice_gone(h->fate[i], fate[0], fate[1], fate[2]) & h->links[i];
         const real *inverse = &h->inverse[h->cells->kind_of[i]];
         h->due[i] = !waits && principal_fails(s, *inverse)
-                        ? lattice_principal(
-                              f, s, h->now[i], h->links[i], *inverse, inverse[h->cells->n_kind])
+                        ? lattice_principal(f, s, h->now[i], h->links[i], *inverse,
+                              inverse[h->cells->n_kind],
+                              (real)lattice_features_lot(h->cells, &h->options, i))
                         : 0;
     }
 }

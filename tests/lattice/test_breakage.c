@@ -79,30 +79,33 @@ static void limits(enum lattice_scheme scheme, bool turn, int first, int end)
     for (int axis = first; axis < end; axis++) {
         int c = turn ? axis : 2 - axis; /* the criterion; all of them are the same here */
         assert_int_equal(
-            mode_of(axis, pull, (struct link_strength){stress, none, c, 0, 0}, scheme, turn),
+            mode_of(axis, pull, (struct link_strength){stress, none, c, 0, 0, 0}, scheme, turn),
             TENSION);
         assert_int_equal(
-            mode_of(axis, pull, (struct link_strength){more, none, c, 0, 0}, scheme, turn), -1);
+            mode_of(axis, pull, (struct link_strength){more, none, c, 0, 0, 0}, scheme, turn), -1);
         assert_int_equal(
-            mode_of(axis, push, (struct link_strength){stress, none, c, 0, 0}, scheme, turn), -1);
+            mode_of(axis, push, (struct link_strength){stress, none, c, 0, 0, 0}, scheme, turn),
+            -1);
         assert_int_equal(
-            mode_of(axis, slide, (struct link_strength){none, stress, c, 0, 0}, scheme, turn),
+            mode_of(axis, slide, (struct link_strength){none, stress, c, 0, 0, 0}, scheme, turn),
             SHEAR);
         assert_int_equal(
-            mode_of(axis, slide, (struct link_strength){none, more, c, 0, 0}, scheme, turn), -1);
-        assert_int_equal(mode_of(axis, twist,
-                             (struct link_strength){none, below * edge / 2, c, 0, 0}, scheme, turn),
+            mode_of(axis, slide, (struct link_strength){none, more, c, 0, 0, 0}, scheme, turn), -1);
+        assert_int_equal(
+            mode_of(axis, twist, (struct link_strength){none, below * edge / 2, c, 0, 0, 0}, scheme,
+                turn),
             TWIST);
-        assert_int_equal(mode_of(axis, twist,
-                             (struct link_strength){none, above * edge / 2, c, 0, 0}, scheme, turn),
+        assert_int_equal(
+            mode_of(axis, twist, (struct link_strength){none, above * edge / 2, c, 0, 0, 0}, scheme,
+                turn),
             -1);
         /* faces that turn by any angle also open a little */
         if (turn && c != CRITERION_LARGEST) continue;
-        assert_int_equal(
-            mode_of(axis, bend, (struct link_strength){below * edge, none, c, 0, 0}, scheme, turn),
+        assert_int_equal(mode_of(axis, bend, (struct link_strength){below * edge, none, c, 0, 0, 0},
+                             scheme, turn),
             BENDING);
-        assert_int_equal(
-            mode_of(axis, bend, (struct link_strength){above * edge, none, c, 0, 0}, scheme, turn),
+        assert_int_equal(mode_of(axis, bend, (struct link_strength){above * edge, none, c, 0, 0, 0},
+                             scheme, turn),
             -1);
     }
 }
@@ -125,11 +128,13 @@ static void schemes_agree(void **state)
     const struct strain pull = {{1.0 / 1024, 0, 0}, {0, 0, 0}};
     (void)state;
     for (int k = 0; k < 5; k++) {
-        assert_int_equal(mode_of(0, pull, (struct link_strength){2, HUGE_VAL, CRITERION_SUM, 0, 0},
-                             schemes[k], true),
+        assert_int_equal(
+            mode_of(0, pull, (struct link_strength){2, HUGE_VAL, CRITERION_SUM, 0, 0, 0},
+                schemes[k], true),
             TENSION);
         assert_int_equal(
-            mode_of(0, pull, (struct link_strength){nextafter(2, 3), HUGE_VAL, CRITERION_SUM, 0, 0},
+            mode_of(0, pull,
+                (struct link_strength){nextafter(2, 3), HUGE_VAL, CRITERION_SUM, 0, 0, 0},
                 schemes[k], true),
             -1);
     }
@@ -169,7 +174,7 @@ static void never_there(int begin, int end)
     const int size[3] = {17, 9, 4};
     const struct link_material material[2] = {{1000, 2e7, 0.3, 0}, {700, 1e7, 0.1, 0}};
     const struct link_strength strength[2] = {
-        {HUGE_VAL, HUGE_VAL, CRITERION_SUM, 0, 0}, {1e-30, 1e-30, CRITERION_SUM, 0, 0}};
+        {HUGE_VAL, HUGE_VAL, CRITERION_SUM, 0, 0, 0}, {1e-30, 1e-30, CRITERION_SUM, 0, 0, 0}};
     for (int k = begin; k < end; k++) {
         struct lattice_cells *cells = bodies_create(1, size, 0.1, 2, bodies_mixed);
         struct lattice_options o = {.scheme = schemes[k],
@@ -221,7 +226,7 @@ static void due_is_kept(void **state)
 {
     const int size[3] = {17, 9, 4};
     const struct link_material material = {1000, 2e7, 0.3, 0};
-    const struct link_strength strength = {HUGE_VAL, HUGE_VAL, CRITERION_SUM, 1e5, 0};
+    const struct link_strength strength = {HUGE_VAL, HUGE_VAL, CRITERION_SUM, 1e5, 0, true};
     struct lattice_cells *cells = bodies_create(1, size, 0.1, 1, bodies_block);
     struct lattice_options o = {
         .dt = 1e-4, .material = &material, .n_material = 1, .n_row = 1, .strength = &strength};
@@ -271,7 +276,7 @@ static double unbalanced(enum lattice_scheme scheme, double dt, double *released
     const int size[3] = {10, 8, 3};
     const struct link_material material[2] = {{1000, 2e7, 0.3, 0}, {700, 1e7, 0.1, 0}};
     const struct link_strength strength[2] = {
-        {HUGE_VAL, HUGE_VAL, CRITERION_SUM, 0, 0}, {1e-30, 1e-30, CRITERION_SUM, 0, 0}};
+        {HUGE_VAL, HUGE_VAL, CRITERION_SUM, 0, 0, 0}, {1e-30, 1e-30, CRITERION_SUM, 0, 0, 0}};
     struct lattice_cells *cells = bodies_create(1, size, 0.1, 2, bodies_block);
     struct lattice_options o = {.scheme = scheme,
         .dt = dt,

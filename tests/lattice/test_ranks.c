@@ -95,8 +95,8 @@ int main(int argc, char **argv)
     if (!some) check(size, bodies_block, 1, 1, (struct lattice_options){0});
     check(thin, bodies_block, 1, 1, (struct lattice_options){.turn = true});
     check(tiny, bodies_block, 1, 1, (struct lattice_options){0});
-    const struct link_strength strength[4] = {
-        {4e5, 8e5, 2, 0, 0}, {6e5, 6e5, 0, 0, 0}, {8e5, 4e5, 1, 0, 0}, {10e5, 2e5, 2, 0, 0}};
+    const struct link_strength strength[4] = {{4e5, 8e5, 2, 0, 0, 0}, {6e5, 6e5, 0, 0, 0, 0},
+        {8e5, 4e5, 1, 0, 0, 0}, {10e5, 2e5, 2, 0, 0, 0}};
     for (int k = some; k < (some ? 2 : 5); k++)
         check(
             size, bodies_mixed, 2, 2, (struct lattice_options){.turn = true, .scheme = scheme[k]});
@@ -105,8 +105,9 @@ int main(int argc, char **argv)
             (struct lattice_options){.turn = true, .scheme = scheme[k], .strength = strength});
     if (!some) check(size, bodies_block, 1, 1, (struct lattice_options){.strength = strength});
     const double none = HUGE_VAL;
-    const struct link_strength principal[4] = {{none, none, 0, 2e5, 0}, {none, none, 0, 3e5, 0.16},
-        {8e5, 4e5, 1, 0, 0}, {none, none, 0, 2e5, 0.16}};
+    const struct link_strength principal[4] = {{none, none, 0, 2e5, 0, true},
+        {none, none, 0, 3e5, 0.16, false}, {8e5, 4e5, 1, 0, 0, false},
+        {none, none, 0, 2e5, 0.16, true}};
     for (int k = 0; k < (some ? 0 : 3); k++)
         check(size, bodies_mixed, 2, 2,
             (struct lattice_options){.turn = true, .scheme = scheme[k], .strength = principal});

@@ -54,9 +54,9 @@ static struct lattice_cells *make(struct lattice_options *o, struct link_materia
     o->n_row = WITH_LOADS ? 5 : 1;
     o->rows_at = rows_at;
     for (int k = 0; k < 4; k++)
-        strength[k] = (struct link_strength){(4 + 2 * k) * 1e5, (10 - 2 * k) * 1e5, k % 3, 0, 0};
+        strength[k] = (struct link_strength){(4 + 2 * k) * 1e5, (10 - 2 * k) * 1e5, k % 3, 0, 0, 0};
     for (int k = 0; k < 2 && WITH_PRINCIPAL; k++)
-        strength[k] = (struct link_strength){HUGE_VAL, HUGE_VAL, 0, (2 + k) * 5e4, 0.2 * k};
+        strength[k] = (struct link_strength){HUGE_VAL, HUGE_VAL, 0, (2 + k) * 5e4, 0.2 * k, k == 1};
     o->strength = WITH_BREAK ? strength : NULL;
     for (int a = 0; a < 3; a++) o->gravity[a] = WITH_GRAVITY ? gravity[a] : 0;
     struct lattice_cells *c =

@@ -88,9 +88,9 @@ static void stresses(void **state)
 {
     const double h = 0.5, E = 100, sigma = 0.05, tau = 0.03;
     struct link_limits l =
-        link_constants_limits((struct link_strength){sigma, tau, BREAK_STRESS, 0, 0}, h);
+        link_constants_limits((struct link_strength){sigma, tau, BREAK_STRESS, 0, 0, 0}, h);
     struct link_limits no =
-        link_constants_limits((struct link_strength){HUGE_VAL, HUGE_VAL, BREAK_STRESS, 0, 0}, h);
+        link_constants_limits((struct link_strength){HUGE_VAL, HUGE_VAL, BREAK_STRESS, 0, 0, 0}, h);
     struct break_limits k = {
         (real)l.normal, (real)l.shear, (real)l.bend, (real)l.twist, BREAK_STRESS};
     struct break_load load;

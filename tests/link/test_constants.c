@@ -66,8 +66,8 @@ static void mixed(void **state)
 
 static void strength(void **state)
 {
-    const struct link_strength a = {2, 5, 1, 0, 0}, b = {3, HUGE_VAL, 0, 0, 0},
-                               c = {3, HUGE_VAL, 2, 0, 0};
+    const struct link_strength a = {2, 5, 1, 0, 0, 0}, b = {3, HUGE_VAL, 0, 0, 0, 0},
+                               c = {3, HUGE_VAL, 2, 0, 0, 0};
     (void)state;
     assert_true(link_constants_weaker(a, b).tension == 2 && link_constants_weaker(b, a).shear == 5);
     assert_true(

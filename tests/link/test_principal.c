@@ -100,8 +100,8 @@ static void holds(void **state)
         {v3_scale(-1, r.x), r.x}, {v3_scale(-1, r.y), r.y}, {v3_scale(-1, r.z), r.z}};
     struct stress s = stress_parts(r, 63);
     (void)state;
-    assert_int_equal(lattice_principal(f, s, c, 63, (real)0.52, (real)0.1), 1);
-    assert_int_equal(lattice_principal(f, s, c, 63, (real)0.51, (real)0.1), 0);
+    assert_int_equal(lattice_principal(f, s, c, 63, (real)0.52, (real)0.1, -1), 1);
+    assert_int_equal(lattice_principal(f, s, c, 63, (real)0.51, (real)0.1, -1), 0);
 }
 
 /* In a uniform stress the link most normal to the crack, the first of two that are equal, and one
@@ -118,12 +118,40 @@ static void link(void **state)
         struct lattice_through f = {
             {v3_scale(-1, r.x), r.x}, {v3_scale(-1, r.y), r.y}, {v3_scale(-1, r.z), r.z}};
         double part[3] = {fabs((double)d.x), fabs((double)d.y), fabs((double)d.z)};
-        int found = lattice_principal(f, s, c, 63, 1, 0),
-            upper = lattice_principal(f, s, c, 42, 1, 0),
+        int found = lattice_principal(f, s, c, 63, 1, 0, -1),
+            upper = lattice_principal(f, s, c, 42, 1, 0, -1),
             axis = part[0] > part[1] ? (part[0] > part[2] ? 0 : 2) : (part[1] > part[2] ? 1 : 2);
         assert_true((found == 1 << (2 * axis)) || found == 2 << (2 * axis));
         assert_int_equal(upper, 2 << (2 * axis));
-        assert_int_equal(lattice_principal(f, s, c, 0, 1, 0), 0);
+        assert_int_equal(lattice_principal(f, s, c, 0, 1, 0, -1), 0);
+    }
+}
+
+/* In a uniform stress lots that fill [0, 1) evenly give each axis as many links as |d| has of it,
+ * over the sum of the three, half of them on either side. */
+static void drawn(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 100; k++) {
+        const int n = 2000;
+        struct quat q = any_turn();
+        vec3 d;
+        struct stress s = stress_with(2, 0, 0, q, &d);
+        struct stress_rows r = stress_symmetric(s);
+        struct link_cell c = {.q = quat_of(1, 0, 0, 0)};
+        struct lattice_through f = {
+            {v3_scale(-1, r.x), r.x}, {v3_scale(-1, r.y), r.y}, {v3_scale(-1, r.z), r.z}};
+        double part[3] = {fabs((double)d.x), fabs((double)d.y), fabs((double)d.z)};
+        int count[6] = {0};
+        for (int i = 0; i < n; i++)
+            for (int face = 0, link = lattice_principal(f, s, c, 63, 1, 0, (i + 0.5) / n); face < 6;
+                 face++)
+                count[face] += link >> face & 1;
+        for (int face = 0; face < 6; face++)
+            assert_true(
+                fabs(count[face] - n * part[face / 2] / 2 / (part[0] + part[1] + part[2])) < 2);
+        assert_int_equal(lattice_principal(f, s, c, 8, 1, 0, 0.999), 8);
+        assert_int_equal(lattice_principal(f, s, c, 0, 1, 0, 0.5), 0);
     }
 }
 
@@ -131,6 +159,6 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(fails), cmocka_unit_test(shear),
         cmocka_unit_test(direction), cmocka_unit_test(rises), cmocka_unit_test(holds),
-        cmocka_unit_test(link)};
+        cmocka_unit_test(link), cmocka_unit_test(drawn)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -189,6 +189,8 @@ static void materials(void **state)
         SCENE(GOOD ", strength: {tension: 1, shear: 1, criterion: principal}", ""),
         "scene.yaml:3:83: materials.m.strength.shear: not with criterion: principal, which breaks "
         "shear by its principal stress");
+    fixture_expect_one(f, SCENE(GOOD ", strength: {tension: 1, path: drawn}", ""),
+        "scene.yaml:3:82: materials.m.strength.path: with criterion: principal only");
     fixture_expect_one(f, SCENE(GOOD ", strength: {energy: 1 J}", ""),
         "scene.yaml:3:72: materials.m.strength.energy: 'J' is the unit of an energy; expected an "
         "energy per area, as in '1 J/m2'");
