@@ -15,21 +15,25 @@
  * io: OMPIO of Open MPI up to 4.1.6 silently corrupts parallel HDF5 files (ompi #12718), and Debian
  * 12 takes it by default: ROMIO instead. hwloc: MPI_Init of a rank without mpirun looks for OpenCL
  * devices by itself if hwloc's plugins are there, and pocl then starts its threads before device.c
- * has said how many.
+ * has said how many; it asks X servers for theirs too, and Xlib ends the process where one goes.
  * mpi_yield_when_idle: a rank's OpenCL workers often share its core (mpirun binds to one), so a
  * rank that waits has to let them run. eager_limit: a message above it takes several looks of both
  * ranks, and they look rarely while their device computes on the same cores; ghosts of one
  * neighbour are some 100 KB. (vader is the shared-memory transport of Open MPI 4, sm that of 5.)
  * ess_singleton_isolated: without mpirun MPI_Init would start a daemon for processes that the rank
- * may start later (this one starts none), which takes longer than all the rest of it. */
+ * may start later (this one starts none), which takes longer than all the rest of it.
+ * orte_create_session_dirs: without that daemon all such ranks of a user have the same folder,
+ * which the first that ends takes away from others that begin. */
 static void environment(void)
 {
     setenv("OMPI_MCA_io", "^ompio", 0);
-    setenv("HWLOC_COMPONENTS", "-opencl", 0);
+    setenv("HWLOC_COMPONENTS", "-opencl,-gl", 0);
     setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0);
     setenv("OMPI_MCA_btl_vader_eager_limit", "262144", 0);
     setenv("OMPI_MCA_btl_sm_eager_limit", "262144", 0);
     setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+    if (!getenv("OMPI_COMM_WORLD_SIZE") && !getenv("PMIX_RANK"))
+        setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
 }
 
 static void warn_of_ompio(void)

@@ -315,7 +315,9 @@ class Piped(Files):
 
     def test_closed(self):
         """Without standard input, output and error no file or pipe of the program takes their
-        place: what is printed would go there."""
+        place: what is printed would go there. Nor is there a folder of MPI, which all ranks
+        without mpirun would share."""
+        os.mkdir(os.path.join(self.dir, "tmp"))
         run = subprocess.Popen(
             [
                 cli.DEMOCLES,
@@ -329,12 +331,14 @@ class Piped(Files):
                 "output.every=1e5",
             ],
             cwd=self.dir,
+            env={**os.environ, "TMPDIR": os.path.join(self.dir, "tmp")},
             preexec_fn=lambda: os.closerange(0, 3),
         )
         while not os.path.exists(os.path.join(self.dir, "d/log.txt")):
             self.assertIsNone(run.poll())
             time.sleep(0.01)
         held = [os.readlink(f"/proc/{run.pid}/fd/{number}") for number in range(3)]
+        self.assertEqual(self.names("tmp", "ompi.*"), [])
         run.send_signal(signal.SIGTERM)
         self.assertEqual((run.wait(60), held), (75, ["/dev/null"] * 3))
         self.assertIn("stopped on request", self.text("d/log.txt"))
