@@ -25,6 +25,20 @@ LAW real account_link(
     return exists ? link_energy(s, k) : (real)0;
 }
 
+/* The law of links is one of small strain: 1 where the gap is more than STRAIN_MOST of an edge, or
+ * the faces are turned by more than 0.5 rad against each other. */
+#define STRAIN_MOST 0.1
+#define STRAIN_TURN (WITH_TURN ? 0.24740396 : 0.5) /* |v| = sin(angle/2) of the quaternion */
+
+LAW real account_strained(
+    int axis, int exists, struct link_cell me, struct link_cell upper, struct link_constants k)
+{
+    struct link_state s = link_state_of(axis, me, upper, k);
+    real most = (real)STRAIN_MOST * k.h, turn = (real)STRAIN_TURN;
+    int is = v3_dot(s.gap, s.gap) > most * most || v3_dot(s.turn, s.turn) > turn * turn;
+    return exists && is ? (real)1 : (real)0;
+}
+
 /* stretch: sum over the links, without damping [m]. */
 LAW real account_volume(real stretch, struct lattice_load l, int links, struct volume_constants c)
 {

@@ -61,6 +61,7 @@
 #define ACCOUNT_LINKS 11
 #define ACCOUNT_MASS 12
 #define ACCOUNT_RELEASED 13 /* 0 without WITH_ENERGY and WITH_BREAK */
-#define ACCOUNT_WIDTH 14
+#define ACCOUNT_STRAINED 14 /* links out of the range of small strain (lattice_account.h) */
+#define ACCOUNT_WIDTH 15
 
 #endif

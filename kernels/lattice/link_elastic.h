@@ -13,6 +13,15 @@ LAW real account_face(int face, struct lattice_view s, size_t l, int word, struc
         lattice_constants(s, face, 1, word, s.begin + l, j));
 }
 
+/* Of the cell's link over its upper face along an axis. */
+LAW real account_strain(int axis, struct lattice_view s, size_t l, int word, struct link_cell me)
+{
+    int face = 2 * axis + 1;
+    size_t j = lattice_beside(s, face, l);
+    return account_strained(axis, LATTICE_LINKS(word) >> face & 1, me, lattice_cell(s, j),
+        lattice_constants(s, face, 1, word, s.begin + l, j));
+}
+
 /* Links and volume of a cell [J]. */
 LAW void account_elastic(struct lattice_view s, size_t l, int word, struct link_cell c,
     struct lattice_load load, __global const real *cell, real *links, real *volume, real *faces)

@@ -61,6 +61,9 @@ __kernel __attribute__((reqd_work_group_size(SUMS_GROUP, 1, 1))) void link_energ
         term[ACCOUNT_LINKS] = ledger[s.plane + i];
         term[ACCOUNT_MASS] = ledger[2 * s.plane + i];
 #endif
+        term[ACCOUNT_STRAINED] =
+            (double)(account_strain(0, s, l, word_i, c) + account_strain(1, s, l, word_i, c) +
+                     account_strain(2, s, l, word_i, c));
         term[ACCOUNT_RELEASED] = 0.0;
 #if WITH_ENERGY && WITH_BREAK
         term[ACCOUNT_RELEASED] =

@@ -114,6 +114,7 @@ void lattice_energy_now(struct lattice_account *a, struct lattice_energy *out)
         *energy_terms_at(term, out) = v[term->source] - energy_terms_value(term, &a->opened);
     memcpy(out->momentum, v + ACCOUNT_MOMENTUM, sizeof out->momentum);
     memcpy(out->angular, v + ACCOUNT_ANGULAR, sizeof out->angular);
+    out->n_strained = v[ACCOUNT_STRAINED];
 }
 
 double lattice_energy_balance(const struct lattice_energy *start, const struct lattice_energy *now)

@@ -20,6 +20,7 @@ struct lattice_energy {
     double released;                   /* [J] by links that broke, since the start */
     double momentum[3];                /* [kg m/s] */
     double angular[3];                 /* [J s] about the origin of coordinates */
+    double n_strained; /* links beyond a strain of 0.1 or a relative turn of 0.5 rad */
 };
 
 struct lattice_account;

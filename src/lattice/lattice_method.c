@@ -217,6 +217,17 @@ static void report_broken(struct sim *s, struct report *r)
     report_end(r);
 }
 
+/* The law of links is linear: beyond small strains its force is no longer that of a material. */
+static void report_strained(struct sim *s, struct report *r, double n)
+{
+    report_number(r, "strained_links", n);
+    if (n > 0)
+        log_warn(s->log,
+            "%.0f links are strained by more than 10 %% or turned by more than 0.5 rad at the end, "
+            "where the linear law of links does not hold",
+            n);
+}
+
 static void report_state(struct sim *s, struct report *r, bool observed)
 {
     struct lattice_energy now = s->lattice->energy_start;
@@ -225,6 +236,7 @@ static void report_state(struct sim *s, struct report *r, bool observed)
     energy_terms_report(
         lattice_energy_table, r, &s->lattice->energy_start, &now, by_work, by_work && observed);
     report_numbers(r, "momentum", now.momentum, 3);
+    if (observed) report_strained(s, r, now.n_strained);
     report_broken(s, r);
 }
 

@@ -43,6 +43,7 @@ static void one_cell(void **state)
     assert_near(e.rotational, 0.5 * J * 77, 1e-11);
     assert_near(e.gravity, -mass * (0.1 - 0.4 + 9.81 * 0.3), 1e-11);
     assert_near(e.elastic, 0, 0);
+    assert_near(e.n_strained, 0, 0);
     for (int a = 0; a < 3; a++) {
         int b = (a + 1) % 3, c = (a + 2) % 3;
         assert_near(e.momentum[a], mass * v[0][a], 1e-11);
@@ -81,6 +82,42 @@ static void strained(void **state)
         free(u);
     }
     bodies_free(cells);
+}
+
+/* Links of two cells along x, the upper one shifted by u or turned about x. */
+static double strained_by(bool turn, const double shift[3], double angle)
+{
+    const struct link_material m = {1000, 2e7, 0.3, 0};
+    const int size[3] = {2, 1, 1};
+    struct lattice_cells *cells = bodies_create(1, size, 0.1, 1, bodies_block);
+    struct lattice_options o = {
+        .dt = 1e-4, .turn = turn, .material = &m, .n_material = 1, .n_row = 1};
+    double u[2][3] = {{0}, {shift[0], shift[1], shift[2]}},
+           q[2][4] = {{1, 0, 0, 0}, {cos(angle / 2), sin(angle / 2), 0, 0}},
+           theta[2][3] = {{0}, {angle, 0, 0}};
+    struct lattice *l = lattice_create(dev, comm, cells, &o);
+    struct lattice_motion motion = {.u = u};
+    if (turn) motion.q = q;
+    else motion.theta = theta;
+    lattice_write(l, &motion);
+    double n = energy_of(l, cells).n_strained;
+    lattice_free(l);
+    bodies_free(cells);
+    return n;
+}
+
+/* 10 % of an edge in any direction, 0.5 rad. */
+static void out_of_range(void **state)
+{
+    (void)state;
+    for (int turn = 0; turn < 2; turn++) {
+        assert_near(strained_by(turn, (const double[]){0, 0, 0}, 0.499), 0, 0);
+        assert_near(strained_by(turn, (const double[]){0, 0, 0}, -0.501), 1, 0);
+        assert_near(strained_by(turn, (const double[]){-0.00999, 0, 0}, 0), 0, 0);
+        assert_near(strained_by(turn, (const double[]){0.01001, 0, 0}, 0), 1, 0);
+        assert_near(strained_by(turn, (const double[]){0, 0.0071, 0.0071}, 0), 1, 0);
+        assert_near(strained_by(turn, (const double[]){0, 0.007, 0.007}, 0), 0, 0);
+    }
 }
 
 /* Largest change of the total over 4 s of a block that spins and vibrates, E = rho = h = 1, over
@@ -221,6 +258,6 @@ static void loaded(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(one_cell), cmocka_unit_test(strained),
-        cmocka_unit_test(kept), cmocka_unit_test(loaded)};
+        cmocka_unit_test(out_of_range), cmocka_unit_test(kept), cmocka_unit_test(loaded)};
     return DEVICE_TESTS(tests);
 }

@@ -264,6 +264,41 @@ class Lattice(parallel_runs.Case):
         self.assertLess(abs(turned - expected), 5e-3)
         self.assertEqual(sorted(last.field("id").tolist()), list(range(8)))
 
+    def test_strained(self):
+        """A bar pulled by a quarter: its links along the pull are beyond the range of their law,
+        on any ranks; by a twentieth, none is."""
+        ends = {
+            side: {"box": {"min": [x - 1e-3, -1, -1], "max": [x + 1e-3, 1, 1]}}
+            for side, x in ((-1, 5e-3), (1, 75e-3))
+        }
+        rubber = {"density": 1000, "young": 1e6, "poisson": 0.3, "damping": {"mass": 1000}}
+        scene = {
+            "title": "pulled",
+            "method": "lattice",
+            "time": {"end": 0.01},
+            "materials": {"rubber": rubber},
+            "bodies": [
+                {
+                    "name": "bar",
+                    "material": "rubber",
+                    "cell": 0.01,
+                    "shape": {"box": {"min": [0, 0, 0], "max": [0.08, 0.02, 0.02]}},
+                }
+            ],
+            "boundaries": [
+                {"where": ends[side], "velocity": [side * 0.875, "free", "free"]}
+                for side in (-1, 1)
+            ],
+            "output": {"every": 0},
+        }
+        for ranks in (1, 3):
+            run = self.good_run(self.put(scene), ranks)
+            self.assertEqual(run.record()["strained_links"], 28)
+            with open(os.path.join(run.dir, "log.txt")) as file:
+                self.assertEqual(file.read().count("28 links are strained by more than 10 %"), 1)
+        scene["time"]["end"] = 2e-3
+        self.assertEqual(self.good_run(self.put(scene), 1).record()["strained_links"], 0)
+
     def test_probes(self):
         """A probe's rotation and stress are those of the frame at the same cell, and have the same
         bits on any number of ranks."""
