@@ -13,6 +13,8 @@
 #ifndef DEMOCLES_BATCH_H
 #define DEMOCLES_BATCH_H
 
+#include "types.h"
+
 #ifndef BATCH
 #define BATCH 64
 #endif
