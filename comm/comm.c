@@ -32,7 +32,7 @@ static void environment(void)
     setenv("OMPI_MCA_btl_vader_eager_limit", "262144", 0);
     setenv("OMPI_MCA_btl_sm_eager_limit", "262144", 0);
     setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
-    if (!getenv("OMPI_COMM_WORLD_SIZE") && !getenv("PMIX_RANK"))
+    if (!getenv("OMPI_COMM_WORLD_SIZE") && !getenv("PMIX_RANK") && !getenv("PMI_RANK"))
         setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
 }
 

@@ -2,7 +2,7 @@
  *   frame DIR [N]      write the frame of frame_fixture.h; files may not grow beyond N bytes
  *   write FILE N       write one column without asking for the room first, files may not grow
  *     beyond N bytes on rank 0 (no limit: 0)
- *   check FILE         print what is wrong with a frame, or nothing
+ *   check FILE...      print what is wrong with frames, or nothing
  *   folder DIR SCENE [--force]   make the folder of results
  *   record DIR [NAME]  a run.json, a log and a time series; no byte goes into the file NAME */
 #include <math.h>
@@ -111,9 +111,11 @@ int main(int argc, char **argv)
 {
     snapshot_serve(argc, argv);
     if (argc > 2 && !strcmp(argv[1], "check")) {
-        char *wrong = snapshot_check(NULL, argv[2]);
-        if (wrong) printf("%s\n", wrong);
-        free(wrong);
+        for (int k = 2; k < argc; k++) {
+            char *wrong = snapshot_check(NULL, argv[k]);
+            if (wrong) printf("%s\n", wrong);
+            free(wrong);
+        }
         return 0;
     }
     struct comm *comm = comm_create(&argc, &argv);

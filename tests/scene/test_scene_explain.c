@@ -84,7 +84,7 @@ static void materials_have_names(void **state)
         free(text);
     }
     char *text = explain("materials.steel", &stdout, true);
-    assert_int_equal(lines(text), 1 + 1 + 2 * 2 + 6 + 6);
+    assert_int_equal(lines(text), 1 + 1 + 2 * 2 + 6 + 7);
     free(text);
 }
 

@@ -272,7 +272,6 @@ class Partition(parallel_runs.Case):
         for method, ranks, weights in (
             ("geometric", 2, "measured"),
             ("interactions", 3, "interactions"),
-            ("graph", 2, "interactions"),
             ("graph", 4, "interactions"),
             ("graph", 3, "measured"),
         ):
