@@ -47,6 +47,17 @@ def named(items, name):
     return next(item for item in items if item["name"] == name)
 
 
+def rayleigh_speed(young, nu, density):
+    """Of surface waves [m/s], by Viktorov's approximation: 0.5 % for 0 <= nu <= 0.5."""
+    return numpy.sqrt(young / (2 * (1 + nu) * density)) * (0.862 + 1.14 * nu) / (1 + nu)
+
+
+def fastest(times, places, window):
+    """Highest mean speed [m/s] over a time `window` [s] of what is at places [m] at times [s]."""
+    starts = [(t, x) for t, x in zip(times, places) if t + window <= times[-1]]
+    return max((numpy.interp(t + window, times, places) - x) / window for t, x in starts)
+
+
 def expected(script):
     """expected.json beside the check."""
     return json.loads((pathlib.Path(script).resolve().parent / "expected.json").read_text())

@@ -115,6 +115,16 @@ static void put_dataset(hid_t file, struct fuzz_bytes *bytes)
     H5Tclose(type);
 }
 
+/* What a column of numbers of this type would be; of anything else its bytes. */
+static enum column_type column_of(hid_t type)
+{
+    size_t each = H5Tget_size(type);
+    bool is_real = H5Tget_class(type) == H5T_FLOAT;
+    if (H5Tget_class(type) == H5T_STRING || (each != 4 && each != 8)) return COLUMN_U8;
+    if (each == 8) return is_real ? COLUMN_F64 : COLUMN_I64;
+    return is_real ? COLUMN_F32 : COLUMN_I32;
+}
+
 /* One number of a dataset that stays as it is otherwise. */
 static void put_number(hid_t file, struct fuzz_bytes *bytes)
 {
@@ -123,16 +133,13 @@ static void put_number(hid_t file, struct fuzz_bytes *bytes)
     if (dataset < 0) return;
     hid_t type = H5Dget_type(dataset), space = H5Dget_space(dataset);
     size_t each = H5Tget_size(type), n = (size_t)H5Sget_simple_extent_npoints(space);
-    bool is_text = H5Tget_class(type) == H5T_STRING, is_real = H5Tget_class(type) == H5T_FLOAT;
+    enum column_type column = column_of(type);
     if (n > 0 && n * each <= sizeof numbers && H5Tis_variable_str(type) <= 0 &&
         H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.byte) >= 0) {
         uint64_t value = fuzz_next(bytes, 8);
         memcpy(numbers.byte + fuzz_choose(bytes, n) * each, &value, each < 8 ? each : 8);
         H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.byte);
-        if (is_text) sign(dataset, COLUMN_U8, n * each, &numbers);
-        else if (each == 8) sign(dataset, is_real ? COLUMN_F64 : COLUMN_I64, n, &numbers);
-        else if (each == 4) sign(dataset, is_real ? COLUMN_F32 : COLUMN_I32, n, &numbers);
-        else sign(dataset, COLUMN_U8, n * each, &numbers);
+        sign(dataset, column, n * each / column_type_size(column), &numbers);
     }
     H5Sclose(space);
     H5Tclose(type);
