@@ -98,16 +98,6 @@ def arguments():
     return parser.parse_args()
 
 
-def find_scene(word):
-    """Path and name of the scene."""
-    path = places.CASES / word / "scene.yaml" if "/" not in word else pathlib.Path(word)
-    if any(path.glob("frame_[0-9]*.hdf")):
-        return path, path.resolve().name
-    if not path.is_file():
-        sys.exit(f"scaling: there is no {path}")
-    return path, path.parent.name if path.name == "scene.yaml" else path.stem
-
-
 def first_step(scene):
     """The step at which the runs begin: 0, or that of the frame from which they resume."""
     if scene.is_file():
@@ -250,7 +240,7 @@ def draw(path, title, rows, reference, cores):
 
 def main():
     options = arguments()
-    scene, name = find_scene(options.scene)
+    scene, name = study.find_scene("scaling", options.scene)
     options.out = options.out or places.OUT / "scaling" / name
     options.out.mkdir(parents=True, exist_ok=True)
     found, reference = run_all(options, scene, first_step(scene)), study.REFERENCE.get(name, {})

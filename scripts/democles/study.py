@@ -6,8 +6,9 @@ import os
 import pathlib
 import shutil
 import subprocess
+import sys
 
-from democles import mpi
+from democles import mpi, places
 
 PARTS = (
     "compute",
@@ -127,9 +128,20 @@ class Record:
         return self.of("partition", "cut")
 
 
-def write_table(path, titles, rows, notes=()):
-    """path.md and path.csv; prints the former. Cells: text, numbers,
-    or None for what is not known."""
+def find_scene(tool, word):
+    """Path and name of a scene: of a case, a file, or a folder of results."""
+    path = places.CASES / word / "scene.yaml" if "/" not in word else pathlib.Path(word)
+    if "/" not in word and not path.is_file():
+        path = pathlib.Path(word)
+    if any(path.glob("frame_[0-9]*.hdf")):
+        return path, path.resolve().name
+    if not path.is_file():
+        sys.exit(f"{tool}: there is no {path}")
+    return path, path.resolve().parent.name if path.name == "scene.yaml" else path.stem
+
+
+def table(titles, rows, notes=()):
+    """Text in markdown. Cells: text, numbers, or None for what is not known."""
 
     def shown(cell):
         return (
@@ -144,7 +156,12 @@ def write_table(path, titles, rows, notes=()):
 
     lines = ["| " + " | ".join(titles) + " |", "|" + "---|" * len(titles)]
     lines += ["| " + " | ".join(map(shown, row)) + " |" for row in rows]
-    text = "\n".join(lines + [""] + list(notes)) + "\n"
+    return "\n".join(lines + [""] + list(notes)) + "\n"
+
+
+def write_table(path, titles, rows, notes=()):
+    """path.md and path.csv; prints the former."""
+    text = table(titles, rows, notes)
     path.with_suffix(".md").write_text(text)
     with open(path.with_suffix(".csv"), "w", newline="") as file:
         csv.writer(file).writerows(

@@ -63,6 +63,12 @@ static void add_devices(struct report *r, const struct sim *s)
     free(all);
 }
 
+/* Of particles: leapfrog. */
+static const struct lattice_table *scheme_of(const struct sim *s)
+{
+    return lattice_schemes_table((enum lattice_scheme)s->scene->time.scheme);
+}
+
 static void add_scale(struct report *r, struct sim *s)
 {
     double loop = s->timers.total[TIMER_LOOP];
@@ -77,6 +83,7 @@ static void add_scale(struct report *r, struct sim *s)
     report_integer(r, "elements_left", s->n_removed); /* the name of 0.1, until 0.3 */
     report_integer(r, "interactions", sum[0]);
     report_integer(r, "steps", s->step);
+    report_integer(r, "force_evaluations", s->step * scheme_of(s)->n); /* of all elements */
     report_number(r, "dt", s->dt);
     report_number(r, "dt_limit", s->dt_limit);
     report_number(r, "time_end", (double)s->step * s->dt);
@@ -196,9 +203,7 @@ static void add_head(struct report *r, const struct sim *s)
     report_text(r, "title", s->scene->title);
     report_text(r, "method", s->ops->name);
     report_text(r, "precision", precision);
-    /* particles: leapfrog */
-    report_text(
-        r, "scheme", lattice_schemes_table((enum lattice_scheme)s->scene->time.scheme)->name);
+    report_text(r, "scheme", scheme_of(s)->name);
     report_integer(r, "ranks", s->comm->n_rank);
     free(precision);
     free(hash);

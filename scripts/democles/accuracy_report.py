@@ -1,0 +1,190 @@
+"""What a study of accuracy found, in words and tables."""
+import csv
+import math
+
+from democles import accuracy_errors, study
+
+MOST_COLUMNS = 6  # of errors, in the table that people read
+
+
+def machine(result):
+    """Device, its driver, and the program."""
+    record = result.finest.record
+    device = record["devices"][0]
+    return (
+        f"{device['name']}, {device['platform_version'].split('  ')[0]}; "
+        f"democles {record['version']} ({record['git']}); {study.cores()} cores"
+    )
+
+
+def evaluations(record):
+    """How often a run has computed the forces of all elements."""
+    return record["force_evaluations"]
+
+
+def cell(value):
+    return None if value is None or math.isnan(value) else value
+
+
+def csv_rows(options, result):
+    """Titles, and a row for each run and column."""
+    keys = list(dict.fromkeys(key for run in result.plan.runs for key in run.setting))
+    kinds = accuracy_errors.KINDS
+    yield [
+        *("role", "state", *keys, "ranks", "precision", "scheme", "step [s]", "steps"),
+        *("force evaluations", "run time [s]", "repeats", "measure", "unit", "scale"),
+        *("largest difference", "rms difference", *(f"error: {kind} [1]" for kind in kinds)),
+        *("order", "final", "rate [1/s]", "crossing [s]"),
+        *(f"scatter: {options.by} [1]", "verdict", "folder"),
+    ]
+    for run in result.plan.runs + [result.plan.reference] * bool(result.plan.reference):
+        head = [run.role, run.reason or "done", *(run.setting.get(key) for key in keys)]
+        if not run.is_done:
+            yield head
+            continue
+        r = run.record
+        head += [r["ranks"], r["precision"], r["scheme"], r["dt"], r["steps"]]
+        head += [evaluations(r), run.seconds, len(run.records)]
+        for name in result.columns:
+            yield head + csv_cells(options, result, run, name)
+
+
+def csv_cells(options, result, run, name):
+    error, numbers = result.errors[run][name], result.numbers[run][name]
+    values = [
+        *(result.scales[name], *result.absolute[run][name]),
+        *(error[kind] for kind in accuracy_errors.KINDS),
+        result.order.get(run, {}).get(name),
+        *(numbers[what] for what in ("final", "rate", "crossing")),
+        result.scatter.get(name, {}).get(options.by),
+    ]
+    return [
+        *(name, result.values[run][name].unit, *map(cell, values)),
+        verdict(result, run, name),
+        str(run.folders[0]),
+    ]
+
+
+def verdict(result, run, name):
+    if run is result.reference_run:
+        return "reference"
+    return "" if result.is_distinguishable(run, name) else "not distinguishable"
+
+
+def shown_columns(result):
+    """The measures: for each the errors of its worst column are shown."""
+    return list(dict.fromkeys(name.split(".")[0] for name in result.columns))[:MOST_COLUMNS]
+
+
+def worst_of(result, run, measure):
+    """(error, column) of a measure; NaN: none has an error."""
+    pairs = [
+        (result.errors[run][name][result.by], name)
+        for name in result.columns
+        if name.split(".")[0] == measure
+    ]
+    pairs = [pair for pair in pairs if not math.isnan(pair[0])]
+    return max(pairs) if pairs else (math.nan, "")
+
+
+def table_rows(result):
+    """What people read: a row for each run."""
+    measures = shown_columns(result)
+    titles = ["run", "step [s]", "force evaluations", "run time [s]"]
+    titles += [f"{measure}: error [%]" for measure in measures] + ["order", ""]
+    rows = []
+    for run in result.plan.runs:
+        if not run.is_done:
+            rows.append([run.label, *[None] * (len(titles) - 2), run.reason])
+            continue
+        r = run.record
+        worst = [worst_of(result, run, measure) for measure in measures]
+        name = result.worst(run)[1]
+        order = result.order.get(run, {}).get(name, math.nan)
+        if run is result.reference_run:
+            name = ""
+            order = max(
+                (p for p in result.order.get(run, {}).values() if not math.isnan(p)),
+                default=math.nan,
+            )
+        alike = name and not result.is_distinguishable(run, name)
+        note = (
+            "reference" if run is result.reference_run else "not distinguishable" if alike else ""
+        )
+        errors = [None if math.isnan(error) else 100 * error for error, _ in worst]
+        rows.append([run.label, r["dt"], evaluations(r), run.seconds, *errors, cell(order), note])
+    return titles, rows
+
+
+def notes(options, result):
+    lines = [
+        f"Reference: {result.reference_text}. Errors: {options.by}, of the worst column of each "
+        "measure, in per cent of its scale.",
+        f"{machine(result)}.",
+    ]
+    if result.scatter:
+        starts = [run for run in result.plan.starts if run.is_done]
+        limits = ", ".join(
+            f"{name} {100 * limit[options.by]:.3g} %"
+            for name, limit in result.scatter.items()
+            if not math.isnan(limit[options.by])
+        )
+        lines.append(
+            f"{len(starts)} starts with {starts[0].label} differ by up to: {limits}; a smaller "
+            "error is not distinguishable."
+        )
+    return lines + result.notes
+
+
+def write(out, options, result):
+    """accuracy.csv, accuracy.md; prints the latter."""
+    with open(out / "accuracy.csv", "w", newline="") as file:
+        csv.writer(file).writerows(csv_rows(options, result))
+    text = study.table(*table_rows(result), notes(options, result))
+    (out / "accuracy.md").write_text(text + "\n" + advice(options, result) + "\n")
+    print(text)
+
+
+def write_failures(plan):
+    for run in plan.runs:
+        print(f"{run.label}: {run.reason}")
+
+
+def advice(options, result):
+    """One sentence: the cheapest setting within the target."""
+    target = f"{100 * options.target:.3g} %"
+    runs = [run for run in result.runs if run is not result.reference_run]
+    good = [run for run in runs if result.is_good(run)]
+    if not good:
+        return none_good(result, runs, target)
+    best = min(good, key=lambda run: run.seconds)
+    error, name = result.worst(best)
+    text = f"{best.label} is the cheapest setting within {target}: its error ({options.by}) is "
+    text += f"{100 * error:.2g} % ({name}) in {best.seconds:.3g} s"
+    if not result.is_distinguishable(best, name):
+        text += ", not distinguishable from the scatter of random starts"
+    reference = result.reference_run or result.plan.reference
+    if reference and reference.is_done and best.seconds > 0:
+        text += f"; the reference takes {reference.seconds / best.seconds:.3g} times as long"
+    if is_coarsest(result, best):
+        text += "; it is the coarsest that has run, and a coarser one may do"
+    return text + "."
+
+
+def is_coarsest(result, best):
+    """Whether nothing that was tried would be cheaper in the graded key, failures included."""
+    group = result.plan.group(best)
+    failed = any(not run.is_done for run in result.plan.runs)
+    return bool(result.plan.graded) and len(group) > 1 and group[0] is best and not failed
+
+
+def none_good(result, runs, target):
+    known = [run for run in runs if not math.isnan(result.worst(run)[0])]
+    if not known:
+        return "Nothing but the reference has run to its end: there is no error to advise by."
+    best = min(known, key=lambda run: result.worst(run)[0])
+    error, name = result.worst(best)
+    return (
+        f"No setting but the reference stays within {target}: the best, {best.label}, is off by "
+        f"{100 * error:.2g} % ({name}); try finer ones."
+    )

@@ -1,0 +1,163 @@
+#!/usr/bin/python3
+"""scripts/accuracy.py on two spheres in contact. Argument: democles."""
+import contextlib
+import csv
+import io
+import json
+import math
+import os
+import sys
+import tempfile
+import unittest
+import unittest.mock
+
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../scripts"))
+from democles import accuracy  # noqa: E402
+
+DEMOCLES = os.path.abspath(sys.argv[1])
+# k_n 1e4 N/m and m* 6.5e-4 kg touch for 8e-4 s: half of it, so that the motion is smooth.
+MASS, STIFFNESS, SPEED, END = 2500 * 4 / 3 * math.pi * 5e-3**3, 1e4, 0.5, 4e-4
+SCENE = """
+method: particles
+time: {end: 4e-4, step: 1e-5}
+materials: {a: {density: 2500}}
+contacts: [{between: [a, a], normal: {law: linear, stiffness: 1e4, damping_ratio: 0}}]
+elements: [{name: two, material: a, file: two.csv}]
+measure:
+  - {name: left, every: 4e-5, probe: {element: 0}}
+  - {name: energy, every: 4e-5, energy: all}
+"""
+FILL = """
+method: particles
+time: {end: 4e-4, step: 2e-5}
+gravity: [0, 0, -9.81]
+materials: {a: {density: 2500}}
+contacts: [{between: [a, a], normal: {law: linear, stiffness: 1e4, damping_ratio: 0}}]
+elements:
+  - name: few
+    material: a
+    shape: {sphere: {radius: 5 mm}}
+    velocity: [0.1, 0, 0]
+    fill: {region: {box: {min: [0, 0, 0], max: [0.05, 0.05, 0.05]}}, count: 9, jitter: 0.2}
+measure: [{name: first, every: 4e-5, probe: {element: 0}}]
+"""
+
+
+class Accuracy(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.put("scene.yaml", SCENE)
+        self.put(
+            "two.csv", f"x,y,z,radius,vx\n-5e-3,0,0,5e-3,{SPEED / 2}\n5e-3,0,0,5e-3,{-SPEED / 2}\n"
+        )
+        self.out = os.path.join(self.folder.name, "study")
+
+    def put(self, name, text):
+        with open(os.path.join(self.folder.name, name), "w") as file:
+            file.write(text)
+
+    def study(self, *args, scene="scene.yaml", figures=False):
+        """Output and messages of the tool; in this process, since its modules take a second."""
+        scene = os.path.join(self.folder.name, scene)
+        words = [scene, "--out", self.out, "--program", DEMOCLES, "--repeats", "1", *args]
+        words += ["--no-figures"] * (not figures)
+        said, told = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(told):
+            with unittest.mock.patch.object(sys, "argv", ["accuracy", *words]):
+                accuracy.main()
+        return said.getvalue(), told.getvalue()
+
+    def rows(self, measure):
+        with open(os.path.join(self.out, "accuracy.csv"), newline="") as file:
+            return [row for row in csv.DictReader(file) if row["measure"] in (measure, None)]
+
+    def test_steps(self):
+        """Three steps, one that fails, and the same again."""
+        args = ["--vary", "time.step=1e-3,4e-5,2e-5,1e-5", "--measure", "left", "--target", "0.5%"]
+        first, told = self.study(*args, figures=True)
+        rows = self.rows("left.x")
+        self.assertRegex(rows[0]["state"], "^failed: .* use a smaller time.step$")
+        self.assertEqual([row["steps"] for row in rows[1:]], ["10", "20", "40"])
+        self.assertEqual([row["force evaluations"] for row in rows[1:]], ["10", "20", "40"])
+        self.assertAlmostEqual(float(rows[3]["order"]), 2, delta=0.1)
+        self.assertEqual(told.count("accuracy: run "), 4)
+        self.assertEqual(self.study(*args, figures=True), (first, ""))
+        self.check_advice(first.splitlines()[-1], rows[1:3])
+        for name in ("accuracy.png", "curves.png"):
+            self.assertGreater(os.path.getsize(os.path.join(self.out, name)), 10000)
+
+    def check_advice(self, line, rows):
+        """The advice by a computation of its own, from the CSV."""
+        all_rows = self.rows("left.x")[1:3] + self.rows("left.vx")[1:3]
+        good = [
+            row
+            for row in rows
+            if all(
+                float(other["error: largest [1]"]) <= 0.005
+                for other in all_rows
+                if other["time.step"] == row["time.step"]
+            )
+        ]
+        if not good:
+            self.assertIn("No setting but the reference stays within 0.5 %", line)
+            return
+        best = min(good, key=lambda row: float(row["run time [s]"]))
+        self.assertTrue(line.startswith(f"time.step={best['time.step']} is the cheapest"), line)
+
+    def test_richardson(self):
+        """What the finest three extrapolate to is nearer to the closed form than any of them."""
+        self.study("--vary", "time.step=4e-5,2e-5,1e-5", "--reference", "richardson")
+        omega = math.sqrt(2 * STIFFNESS / MASS)
+        exact = SPEED / omega * math.sin(omega * END) / 2 - 5e-3
+        rows = self.rows("left.x")
+        final = [float(row["final"]) for row in rows]
+        error = [float(row["error: final [1]"]) * float(row["scale"]) for row in rows]
+        extrapolated = final[-1] + error[-1] * (-1 if final[-1] < final[0] else 1)
+        self.assertLess(abs(extrapolated - exact), 0.05 * abs(final[-1] - exact))
+        for row in rows[1:]:
+            self.assertAlmostEqual(float(row["order"]), 2, delta=0.1)
+
+    def test_references(self):
+        """A run of its own, and a file of values; ranks have no error."""
+        omega = math.sqrt(2 * STIFFNESS / MASS)
+        exact = SPEED / omega * math.sin(omega * END) / 2 - 5e-3
+        self.put("values.csv", f"measure,number,value\nleft.x,final,{exact!r}\n")
+        vary = ["--vary", "time.step=2e-5,1e-5", "--vary", "ranks=1,2", "--measure", "left.x"]
+        values = os.path.join(self.folder.name, "values.csv")
+        self.study(*vary, "--reference-file", values, "--by", "final")
+        error = [float(row["error: final [1]"]) for row in self.rows("left.x")]
+        self.assertEqual(error[0], error[1])
+        self.assertAlmostEqual(error[0] / error[2], 4, delta=0.2)
+        self.study(*vary, "--reference", "time.step=1e-6", "--crossing", "left.x=-4.95e-3")
+        rows = self.rows("left.x")
+        self.assertEqual([row["role"] for row in rows], ["run"] * 4 + ["reference"])
+        self.assertEqual(float(rows[-1]["error: largest [1]"]), 0)
+        self.assertAlmostEqual(float(rows[2]["order"]), 2, delta=0.1)
+        when = math.asin(2 * 5e-5 * omega / SPEED) / omega
+        # linear between times of the measure, h apart: a h^2/8 of a way at speed v, and the step
+        self.assertAlmostEqual(float(rows[0]["crossing [s]"]), when, delta=1e-6)
+
+    def test_starts(self):
+        """An error below what starts differ by is not distinguishable."""
+        self.put("fill.yaml", FILL)
+        said, _ = self.study(
+            *("--vary", "time.step=4e-5,2e-5,1e-5", "--starts", "2", "--measure", "first"),
+            scene="fill.yaml",
+        )
+        rows = self.rows("first.x")
+        self.assertGreater(float(rows[0]["scatter: largest [1]"]), 1e-3)
+        self.assertEqual(rows[0]["verdict"], "not distinguishable")
+        self.assertIn("3 starts with time.step=2e-5 differ by up to", said)
+        seeds = set()
+        for folder, _, files in os.walk(os.path.join(self.out, "runs")):
+            if "run.json" in files:
+                with open(os.path.join(folder, "run.json")) as file:
+                    self.assertEqual(json.load(file)["exit"], 0)
+                with open(os.path.join(folder, "resolved.yaml")) as file:
+                    seeds |= {line.split()[-1] for line in file if "seed:" in line}
+        self.assertEqual(len(seeds), 3, seeds)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
