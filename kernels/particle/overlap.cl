@@ -1,7 +1,7 @@
-/* What soft contacts may do unseen: the largest overlap of now, and centres that have passed a wall
- * since the lists were built. Rare: once per list build and per look at the limit of the time step.
- * Work-items stride over elements, and of equal overlaps the lower id counts, so the result does
- * not depend on how many groups there are.
+/* What may go wrong unseen: the largest overlap of now, centres that have passed a wall since the
+ * lists were built, and elements that have left the room that these gave them. Rare: once per list
+ * build and per look at the limit of the time step. Work-items stride over elements, and of equal
+ * overlaps the lower id counts, so the result does not depend on how many groups there are.
  *
  * lint: WITH_TRIANGLE requires WITH_WALLS
  * lint: WITH_MATERIALS requires WITH_SPIN */
@@ -85,6 +85,28 @@ __kernel __attribute__((reqd_work_group_size(OVERLAP_GROUP, 1, 1))) void overlap
         partial[g] = largest.share;
         partial_id[2 * g] = largest.id;
         partial_id[2 * g + 1] = largest.with;
+    }
+}
+
+/* partial [n_group]: largest displacement since the lists were built over the room that they gave:
+ * above 1, neighbours may be missing. reference: as in integrate.h. */
+__kernel __attribute__((reqd_work_group_size(OVERLAP_GROUP, 1, 1))) void room_used(int n_owned,
+    int n_group, __global const preal *position, __global const preal *reference,
+    __global real *partial)
+{
+    __local real used[OVERLAP_GROUP];
+    int l = get_local_id(0), g = get_group_id(0);
+    real most = 0;
+    for (int e = g * OVERLAP_GROUP + l; e < n_owned && g < n_group; e += n_group * OVERLAP_GROUP) {
+        preal4 from = vload4(e, reference);
+        pvec3 way = p3_sub(XYZ(LOAD_POSITION(e)), XYZ(from));
+        most = r_max(most, (real)(p_sqrt(p3_dot(way, way)) / from.s3));
+    }
+    used[l] = most;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    if (l == 0 && g < n_group) {
+        for (int m = 1; m < OVERLAP_GROUP; m++) most = r_max(most, used[m]);
+        partial[g] = most;
     }
 }
 

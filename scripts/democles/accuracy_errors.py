@@ -194,8 +194,8 @@ class Study:
             self.find_orders(group)
         if any(not self.has_same_times(run) for run in self.runs):
             self.notes.append(
-                "Where runs have no times in common the reference is interpolated, linearly: steps "
-                "that divide `every` of the measures avoid it."
+                "Where runs have no times in common the reference is interpolated, which is an "
+                "error of its own: steps that divide `every` of the measures avoid it."
             )
 
     def has_same_times(self, run):

@@ -88,13 +88,13 @@ class Run:
             return None
 
     def fineness(self):
-        """Sorts the finest first: smallest cells, smallest step, highest precision and order."""
+        """Sorts the finest first: smallest cells, highest order, smallest step, most digits."""
         cells = [self.size(key) or 0 for key in self.setting if key.split(",")[0].endswith(".cell")]
         return (
             *cells,
+            self.record["scheme"] not in FOURTH_ORDER,
             self.record["dt"],
             -PRECISIONS.index(self.record["precision"]),
-            self.record["scheme"] not in FOURTH_ORDER,
         )
 
 

@@ -71,9 +71,25 @@ def load_file(path):
         return {}, {}
 
 
+def between(time, value, at):
+    """Interpolation by the cubic through four neighbours; linear for counts and short series."""
+    if len(time) < 4 or numpy.array_equal(value, numpy.round(value)):
+        return numpy.interp(at, time, value)
+    first = numpy.clip(numpy.searchsorted(time, at) - 2, 0, len(time) - 4)
+    result = numpy.zeros(len(at))
+    for k in range(4):
+        weight = numpy.ones(len(at))
+        for m in range(4):
+            if m != k:
+                other = time[first + m]
+                weight *= (at - other) / (time[first + k] - other)
+        result += weight * value[first + k]
+    return result
+
+
 def meet(run, reference):
     """The values of both at the times that both have, and whether these are times of both: where
-    they are not, the reference is interpolated to the run's times, linearly."""
+    they are not, the reference is interpolated to the run's times."""
     if len(reference.time) < 2 or len(run.time) < 2:
         n = min(len(run.time), len(reference.time))
         return run.value[:n], reference.value[:n], True
@@ -86,7 +102,7 @@ def meet(run, reference):
     inside = (run.time >= reference.time[0]) & (run.time <= reference.time[-1])
     return (
         run.value[inside],
-        numpy.interp(run.time[inside], reference.time, reference.value),
+        between(reference.time, reference.value, run.time[inside]),
         False,
     )
 

@@ -121,3 +121,9 @@ double lattice_energy_balance(const struct lattice_energy *start, const struct l
 {
     return energy_terms_balance(lattice_energy_table, start, now);
 }
+
+double lattice_energy_supplied(const struct lattice_energy *start, const struct lattice_energy *now)
+{
+    return start->kinetic + start->rotational + start->elastic + fabs(now->work) +
+           fabs(now->gravity - start->gravity);
+}

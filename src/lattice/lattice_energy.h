@@ -46,5 +46,8 @@ extern const struct energy_term lattice_energy_table[];
  * vanishes with the scheme's order (what is released: with the second, by splittings that begin
  * with a kick). */
 double lattice_energy_balance(const struct lattice_energy *start, const struct lattice_energy *now);
+/* What was there at the start, and came since [J]: what a balance error is measured by. */
+double lattice_energy_supplied(
+    const struct lattice_energy *start, const struct lattice_energy *now);
 
 #endif

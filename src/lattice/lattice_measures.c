@@ -127,9 +127,8 @@ static void measure_broken(struct sim *s, int m, const struct view *view, double
 static void check_energy(struct sim *s, const struct lattice_energy *now)
 {
     const struct lattice_energy *start = &s->lattice->energy_start;
-    double in = start->kinetic + start->rotational + start->elastic + fabs(now->work) +
-                fabs(now->gravity - start->gravity);
-    energy_watch(s, lattice_energy_balance(start, now), in, 1e-9 * fabs(now->gravity));
+    energy_watch(s, lattice_energy_balance(start, now), lattice_energy_supplied(start, now),
+        ENERGY_WATCH_SPARE(now->gravity));
 }
 
 static void measure_energy(struct sim *s, int m, const struct view *view, double *value)

@@ -9,10 +9,12 @@
 #include "lattice_fields.h"
 #include "lattice_frequency.h"
 #include "lattice_restore.h"
+#include "run/energy_watch.h"
 #include "run/output.h"
 #include "results/report.h"
 #include "run/record.h"
 #include "run/resume.h"
+#include "run/trust.h"
 #include "scene/scene_report.h"
 
 /* Steps to measure the speed of the ranks by, and those before. */
@@ -228,6 +230,17 @@ static void report_strained(struct sim *s, struct report *r, double n)
             n);
 }
 
+/* now: NULL where the energy is not measured. */
+static void report_trust(const struct sim *s, struct report *r, const struct lattice_energy *now)
+{
+    const struct lattice_energy *start = &s->lattice->energy_start;
+    struct trust trust = trust_unknown;
+    if (now)
+        trust.energy_error = trust_energy(lattice_energy_balance(start, now),
+            lattice_energy_supplied(start, now), ENERGY_WATCH_SPARE(now->gravity));
+    trust_report(s, r, trust);
+}
+
 static void report_state(struct sim *s, struct report *r, bool observed)
 {
     struct lattice_energy now = s->lattice->energy_start;
@@ -238,6 +251,7 @@ static void report_state(struct sim *s, struct report *r, bool observed)
     report_numbers(r, "momentum", now.momentum, 3);
     if (observed) report_strained(s, r, now.n_strained);
     report_broken(s, r);
+    if (observed) report_trust(s, r, by_work ? &now : NULL);
 }
 
 static int launches(const struct sim *s, struct step_launch launch[STEP_LAUNCHES])

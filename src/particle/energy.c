@@ -296,3 +296,9 @@ double energy_balance(const struct energy_sums *start, const struct energy_sums 
 {
     return energy_terms_balance(energy_table, start, now);
 }
+
+double energy_supplied(const struct energy_sums *start, const struct energy_sums *now)
+{
+    return start->kinetic + start->rotational + start->elastic + fabs(now->wall_work) +
+           fabs(now->removed) + fabs(now->gravity - start->gravity);
+}

@@ -62,5 +62,7 @@ extern const struct energy_term energy_table[];
 /* E_kin + E_rot + E_el + E_g + losses + removed - wall_work, now minus start [J]: zero in exact
  * arithmetic and with an infinitely small step. */
 double energy_balance(const struct energy_sums *start, const struct energy_sums *now);
+/* What was there at the start, and came since [J]: what a balance error is measured by. */
+double energy_supplied(const struct energy_sums *start, const struct energy_sums *now);
 
 #endif

@@ -53,6 +53,10 @@ const char *limit_missing(const struct scene *scene, const struct elements_host 
  * `speed` [m/s] makes them; infinity if nothing can ever touch. */
 double limit_dense(const struct scene *scene, const struct elements_host *elements, double speed);
 
+/* The shortest contact [s] of any two elements, or of one with a wall, that meet at `speed`;
+ * infinity if nothing can touch. */
+double limit_shortest_contact(
+    const struct scene *scene, const struct elements_host *elements, double speed);
 /* What speaks against the step dt [s] besides stability, one text each: too few steps per contact,
  * per radius, per range of a bond; overlaps
  * that the scene's weights and speeds allow; single precision far from the origin. */

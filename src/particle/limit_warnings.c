@@ -144,15 +144,17 @@ static void look(struct worst *worst, const struct scene *scene, const struct li
     worst->bond_speed = v;
 }
 
-void limit_warnings(const struct scene *scene, const struct walls *walls,
-    const struct elements_host *elements, double speed, double dt, struct scene_errors *warnings)
+/* r: the smallest radius [m]. */
+static struct worst worst_of(
+    const struct scene *scene, const struct elements_host *elements, double speed, double *r)
 {
     int n_class;
     struct limit_class *all = limit_classes(scene, elements, &n_class);
     struct worst worst = {.contact = HUGE_VAL, .bond = HUGE_VAL};
-    double r = HUGE_VAL, among = pair_speed(scene, elements, speed);
+    double among = pair_speed(scene, elements, speed);
+    *r = HUGE_VAL;
     for (int c = 0; c < n_class; c++) {
-        r = fmin(r, all[c].r);
+        *r = fmin(*r, all[c].r);
         for (int p = 0; p <= c; p++)
             if (p != c || all[c].n > 1) {
                 look(&worst, scene, &all[c], &all[p],
@@ -166,12 +168,27 @@ void limit_warnings(const struct scene *scene, const struct walls *walls,
         }
     }
     free(all);
+    return worst;
+}
+
+double limit_shortest_contact(
+    const struct scene *scene, const struct elements_host *elements, double speed)
+{
+    double r;
+    return worst_of(scene, elements, speed, &r).contact;
+}
+
+void limit_warnings(const struct scene *scene, const struct walls *walls,
+    const struct elements_host *elements, double speed, double dt, struct scene_errors *warnings)
+{
+    double r;
+    struct worst worst = worst_of(scene, elements, speed, &r);
     limit_precision_warnings(scene, walls, elements, speed, dt, warnings);
     warn_how_deep(&worst.deepest, scene, warnings);
     if (worst.contact < CONTACT_STEPS * dt)
         scene_errors_add(warnings,
             "the shortest contact lasts %.3g s, %.1f time steps of %.3g s; with fewer than %d "
-            "its restitution is inaccurate",
+            "its restitution is inaccurate: a smaller time.step, or softer contacts",
             worst.contact, worst.contact / dt, dt, CONTACT_STEPS);
     if (speed * dt > SHARE * r)
         scene_errors_add(warnings,

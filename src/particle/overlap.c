@@ -1,5 +1,6 @@
 #include "overlap.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "comm/fail.h"
@@ -9,7 +10,8 @@
 #include "results/report.h"
 
 struct overlap {
-    struct launch *look, *passage; /* passage: NULL without walls */
+    struct launch *look, *room_used, *passage; /* passage: NULL without walls */
+    double used;                               /* [1] of the room, of this rank */
     struct buffer partial, partial_count, partial_id, pose_built;
     struct {
         double share;  /* [1]; 0: none so far */
@@ -35,6 +37,7 @@ struct overlap *overlap_create(struct sim *s)
     const struct program *program = limit_program(run->limit);
     o->passed.step = INT64_MAX;
     o->look = launch_create(program, "overlap");
+    o->room_used = launch_create(program, "room_used");
     o->passage = run->wall_contacts ? launch_create(program, "passage") : NULL;
     buffers_create(s->dev, o, buffers);
     buffer_reserve(&o->partial, LIMIT_GROUPS * particles_real(&run->features));
@@ -51,6 +54,7 @@ void overlap_free(struct overlap *overlap)
     if (!overlap) return;
     buffers_free(overlap, buffers);
     launch_free(overlap->look);
+    launch_free(overlap->room_used);
     launch_free(overlap->passage);
     free(overlap);
 }
@@ -69,10 +73,9 @@ static const struct buffer *built_poses(struct sim *s, struct overlap *o)
     return &o->pose_built;
 }
 
-void overlap_look_behind(struct sim *s)
+static void look_at_walls(struct sim *s, struct overlap *o)
 {
     struct particle_run *run = s->particle;
-    struct overlap *o = run->overlap;
     const struct particles *p = run->particles;
     const struct wall_contacts *w = run->wall_contacts;
     if (!w || w->now.n == 0) return;
@@ -100,6 +103,26 @@ void overlap_look_behind(struct sim *s)
     o->passed.step = s->step;
     o->passed.id[0] = first[0];
     o->passed.id[1] = first[1];
+}
+
+static void look_at_room(struct sim *s, struct overlap *o)
+{
+    struct particle_run *run = s->particle;
+    const struct particles *p = run->particles;
+    launch_bind_all(
+        o->room_used, (const struct launch_binding[]){{"position", &p->field[FIELD_STATE].now},
+                          {"reference", &p->reference}, {"partial", &o->partial}, {0}});
+    int n_group = limit_run_groups(s, o->room_used);
+    if (n_group == 0) return;
+    double *used = reals_read(&o->partial, run->features.real_is_float, 0, (size_t)n_group);
+    for (int g = 0; g < n_group; g++) o->used = fmax(o->used, used[g]);
+    free(used);
+}
+
+void overlap_look_behind(struct sim *s)
+{
+    look_at_walls(s, s->particle->overlap);
+    look_at_room(s, s->particle->overlap);
 }
 
 void overlap_look(struct sim *s)
@@ -189,6 +212,18 @@ void overlap_warn(struct sim *s)
     log_warn(s->log, "t = %.6g s: element %lld has passed wall '%s'",
         (double)o->passed.step * s->dt, (long long)o->passed.id[0],
         s->scene->wall[o->passed.id[1]].name);
+}
+
+double overlap_largest(const struct sim *s)
+{
+    return s->particle->overlap->largest.share;
+}
+
+double overlap_room_used(const struct sim *s)
+{
+    double used = s->particle->overlap->used;
+    comm_max_f64(s->comm, &used, 1);
+    return used;
 }
 
 /* Of the first step that is known: element, and the other one or the wall. */

@@ -133,9 +133,8 @@ static void measure_probe(struct sim *s, int i, const struct view *view, double 
 static void check_energy(struct sim *s, const struct energy_sums *e)
 {
     const struct energy_sums *start = &s->particle->energy_start;
-    double in = start->kinetic + start->rotational + start->elastic + fabs(e->wall_work) +
-                fabs(e->removed) + fabs(e->gravity - start->gravity);
-    energy_watch(s, energy_balance(start, e), in, 1e-9 * fabs(e->gravity));
+    energy_watch(
+        s, energy_balance(start, e), energy_supplied(start, e), ENERGY_WATCH_SPARE(e->gravity));
 }
 
 static void measure_energy(struct sim *s, int i, const struct view *view, double *value)

@@ -9,7 +9,9 @@
 #include "energy.h"
 #include "comm/fail.h"
 #include "results/report.h"
+#include "run/energy_watch.h"
 #include "run/record.h"
+#include "run/trust.h"
 
 /* Digest of the state as it lies on the device, in its own bits. Returns false if there are
  * NaNs. */
@@ -67,6 +69,21 @@ void particle_report_features(const struct sim *s, struct report *r)
     record_features(r, features_table, &s->particle->features);
 }
 
+static void report_trust(struct sim *s, struct report *r, const struct energy_sums *now)
+{
+    struct particle_run *run = s->particle;
+    const struct energy_sums *start = &run->energy_start;
+    struct trust trust = trust_unknown;
+    double speed = limit_speed(s->scene, run->walls, run->first);
+    if (run->features.energy)
+        trust.energy_error = trust_energy(energy_balance(start, now), energy_supplied(start, now),
+            ENERGY_WATCH_SPARE(now->gravity));
+    trust.contact_steps = limit_shortest_contact(s->scene, run->first, speed) / s->dt;
+    trust.overlap = overlap_largest(s);
+    trust.list_room = overlap_room_used(s);
+    trust_report(s, r, trust);
+}
+
 void particle_report_state(struct sim *s, struct report *r, bool observed)
 {
     struct particle_run *run = s->particle;
@@ -76,6 +93,7 @@ void particle_report_state(struct sim *s, struct report *r, bool observed)
     energy_terms_report(energy_table, r, &run->energy_start, &now, measured, measured && observed);
     report_numbers(r, "momentum", now.momentum, 3);
     overlap_report(s, r, observed);
+    if (observed) report_trust(s, r, &now);
 }
 
 int particle_launches(const struct sim *s, struct step_launch launch[STEP_LAUNCHES])

@@ -93,6 +93,31 @@ class Overlaps(cli.Case):
         self.assertEqual(run.err, [])
         self.assertEqual(record["passed_walls"], {"count": 0})
         self.assertTrue(0 < record["overlap"]["largest"] < 0.01)
+        self.assertEqual(record["trust"]["outside"], [])
+
+    def test_trust(self):
+        """Two balls that meet within few steps: each number from what it stands for."""
+        scene = HEAVY.replace("END", "4 ms").replace("SURFACE", RECTANGLE).replace("STIFF", "2e4")
+        scene = scene.replace("2 N/m", "2e4 N/m") + "measure: [{name: e, every: 1 s, energy: all}]"
+        rows = ["0,0,0.1,0.005,0", "0,0,0.111,0.005,-3", "0.3,0,0.00499,0.005,0"]
+        run, record = self.go("d", scene, rows, "--set", "time.step=4e-5")
+        trust, energy = record["trust"], record["energy"]
+        mass, end = 2500 * 4 / 3 * math.pi * 0.005**3, energy["end"]
+        contact = math.pi * math.sqrt(mass / 2 / 2e4)  # of the pair; with the wall it is longer
+        self.assertAlmostEqual(trust["contact_steps"] / (contact / 4e-5), 1, places=6)
+        supplied = energy["start"]["kinetic"] + energy["start"]["elastic"]
+        supplied += abs(end["gravity"] - energy["start"]["gravity"])
+        self.assertAlmostEqual(
+            trust["energy_error"] / (abs(energy["balance_error"]) / supplied), 1, places=6
+        )
+        self.assertEqual(trust["step"], record["dt"] / record["dt_limit"])
+        self.assertEqual(trust["overlap"], record["overlap"]["largest"])
+        # the one at rest had room for its own speed alone: it went off with about 3 m/s
+        self.assertGreater(trust["list_room"], 1)
+        self.assertIn("contact_steps", trust["outside"])
+        self.assertIn("list_room", trust["outside"])
+        said = [line for line in run.err if "errors may be above 1 %" in line]
+        self.assertRegex(said[0], "shortest contact 14.2 steps, below 20: a smaller time.step")
 
     def test_pairs_on_any_ranks(self):
         """Two balls that pass each other; 3 m/s (m*/k)^(1/2) = 24 mm are more than 10 mm."""

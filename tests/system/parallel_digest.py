@@ -41,6 +41,7 @@ def of_all(run):
             "rebuilds",
             "energy",
             "momentum",
+            "trust",
         )
     }
     return same, run.series(), run.contacts()

@@ -1,0 +1,97 @@
+#include "trust.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+
+#include "comm/fail.h"
+
+struct row {
+    const char *name;
+    size_t at; /* of the double in struct trust */
+    double least, most;
+    const char *before, *after, *advice; /* around the value */
+};
+
+#define SMALLER_STEP "a smaller time.step"
+
+static const struct row rows[] = {
+    {"energy_error", offsetof(struct trust, energy_error), 0, 0.01, "energy balance off by ",
+        " of what was supplied", SMALLER_STEP},
+    {"step", offsetof(struct trust, step), 0, 1, "time step ", " of the critical one",
+        SMALLER_STEP},
+    {"contact_steps", offsetof(struct trust, contact_steps), 20, HUGE_VAL, "shortest contact ",
+        " steps", SMALLER_STEP ", or softer contacts"},
+    {"overlap", offsetof(struct trust, overlap), 0, 0.2, "largest overlap ", " of the radius",
+        "stiffer contacts"},
+    {"list_room", offsetof(struct trust, list_room), 0, 1, "neighbour lists used ",
+        " of their room", SMALLER_STEP},
+};
+enum { N_ROW = sizeof rows / sizeof *rows };
+
+const struct trust trust_unknown = {
+    (double)NAN, (double)NAN, (double)NAN, (double)NAN, (double)NAN};
+
+static double value_of(const struct trust *trust, const struct row *row)
+{
+    return *(const double *)(const void *)((const char *)trust + row->at);
+}
+
+static bool is_outside(const struct row *row, double value)
+{
+    return value < row->least || value > row->most;
+}
+
+double trust_energy(double balance, double supplied, double spare)
+{
+    double all = supplied + spare;
+    return all > 0 ? fabs(balance) / all : (double)NAN;
+}
+
+/* Joins the next part to `all`; takes both over. */
+static char *join(char *all, char *part)
+{
+    if (!all) return part;
+    char *longer = fail_format("%s; %s", all, part);
+    free(all);
+    free(part);
+    return longer;
+}
+
+/* All that are known, or those outside their range with it and with what to do. NULL where there
+ * are none. The caller owns it. */
+static char *list(const struct trust *trust, bool outside)
+{
+    char *all = NULL;
+    for (const struct row *row = rows; row < rows + N_ROW; row++) {
+        double value = value_of(trust, row);
+        if (!isfinite(value) || (outside && !is_outside(row, value))) continue;
+        if (!outside) {
+            all = join(all, fail_format("%s%.3g%s", row->before, value, row->after));
+            continue;
+        }
+        bool above = value > row->most;
+        all =
+            join(all, fail_format("%s%.3g%s, %s %g: %s", row->before, value, row->after,
+                          above ? "above" : "below", above ? row->most : row->least, row->advice));
+    }
+    return all;
+}
+
+void trust_report(const struct sim *s, struct report *r, struct trust trust)
+{
+    if (isfinite(s->dt_limit) && s->dt_limit > 0) trust.step = s->dt / s->dt_limit;
+    report_begin(r, "trust");
+    for (const struct row *row = rows; row < rows + N_ROW; row++)
+        report_number(r, row->name, value_of(&trust, row));
+    report_begin_list(r, "outside");
+    for (const struct row *row = rows; row < rows + N_ROW; row++)
+        if (is_outside(row, value_of(&trust, row))) report_text(r, NULL, row->name);
+    report_end(r);
+    report_end(r);
+    char *all = list(&trust, false), *outside = list(&trust, true);
+    if (all) log_print(s->log, "%s", all);
+    if (outside) log_warn(s->log, "errors may be above 1 %%: %s", outside);
+    free(all);
+    free(outside);
+}
