@@ -240,15 +240,26 @@ class Study:
             found[name] = {kind: highest(pair[kind] for pair in pairs) for kind in KINDS}
         return found
 
+    def largest_scatter(self, measure=None):
+        """Of the columns of a measure, or of all; NaN: none is known."""
+        return highest(
+            limit[self.by]
+            for name, limit in self.scatter.items()
+            if measure in (None, name.split(".")[0])
+        )
+
     def is_distinguishable(self, run, name):
         """Whether the error is above what two starts differ by."""
         limit = self.scatter.get(name, {}).get(self.by, math.nan)
         return not self.errors[run][name][self.by] <= limit
 
-    def worst(self, run):
-        """Largest error of all columns, and its column; NaN: none has one."""
-        pairs = [(error[self.by], name) for name, error in self.errors[run].items()]
-        pairs = [pair for pair in pairs if not math.isnan(pair[0])]
+    def worst(self, run, measure=None):
+        """Largest error of all columns, or of a measure's, and its column. What can be told from
+        the scatter comes first. NaN: none has one."""
+        names = [name for name in self.columns if measure in (None, name.split(".")[0])]
+        names = [name for name in names if not math.isnan(self.errors[run][name][self.by])]
+        told = [name for name in names if self.is_distinguishable(run, name)]
+        pairs = [(self.errors[run][name][self.by], name) for name in told or names]
         return max(pairs) if pairs else (math.nan, "")
 
     def is_good(self, run):

@@ -15,7 +15,7 @@ LEAST = 1e-16  # an error of 0 has no place on a logarithmic axis
 
 
 def errors_of(result, run, measure):
-    error = result.worst(run)[0] if measure is None else report.worst_of(result, run, measure)[0]
+    error = result.worst(run, measure)[0]
     return max(error, LEAST) if math.isfinite(error) else math.nan
 
 
@@ -43,13 +43,9 @@ def draw_panel(axis, result, measure, target):
                     textcoords="offset points",
                     size=8,
                 )
-    scatter = [
-        limit[result.by]
-        for name, limit in result.scatter.items()
-        if measure in (None, name.split(".")[0]) and limit[result.by] > 0
-    ]
-    if scatter:
-        axis.axhline(max(scatter), color="0.5", ls="--", lw=1, label="scatter of starts")
+    scatter = result.largest_scatter(measure)
+    if scatter > 0:
+        axis.axhline(scatter, color="0.5", ls="--", lw=1, label="scatter of starts")
     axis.axhline(target, color="0.5", ls=":", lw=1, label=f"target {100 * target:.3g} %")
     failed = [run for run in plan.runs if not run.is_done]
     for n, run in enumerate(failed):  # they have neither error nor time: at the upper edge

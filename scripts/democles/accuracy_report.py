@@ -76,17 +76,6 @@ def shown_columns(result):
     return list(dict.fromkeys(name.split(".")[0] for name in result.columns))[:MOST_COLUMNS]
 
 
-def worst_of(result, run, measure):
-    """(error, column) of a measure; NaN: none has an error."""
-    pairs = [
-        (result.errors[run][name][result.by], name)
-        for name in result.columns
-        if name.split(".")[0] == measure
-    ]
-    pairs = [pair for pair in pairs if not math.isnan(pair[0])]
-    return max(pairs) if pairs else (math.nan, "")
-
-
 def table_rows(result):
     """What people read: a row for each run."""
     measures = shown_columns(result)
@@ -98,7 +87,7 @@ def table_rows(result):
             rows.append([run.label, *[None] * (len(titles) - 2), run.reason])
             continue
         r = run.record
-        worst = [worst_of(result, run, measure) for measure in measures]
+        worst = [result.worst(run, measure) for measure in measures]
         name = result.worst(run)[1]
         order = result.order.get(run, {}).get(name, math.nan)
         if run is result.reference_run:
@@ -125,13 +114,13 @@ def notes(options, result):
     if result.scatter:
         starts = [run for run in result.plan.starts if run.is_done]
         limits = ", ".join(
-            f"{name} {100 * limit[options.by]:.3g} %"
-            for name, limit in result.scatter.items()
-            if not math.isnan(limit[options.by])
+            f"{measure} {100 * limit:.3g} %"
+            for measure in shown_columns(result)
+            if (limit := result.largest_scatter(measure)) > 0
         )
         lines.append(
-            f"{len(starts)} starts with {starts[0].label} differ by up to: {limits}; a smaller "
-            "error is not distinguishable."
+            f"{len(starts)} starts with {starts[0].label} differ by up to: {limits} (the worst "
+            "column of each); an error that is smaller in its column is not distinguishable."
         )
     return lines + result.notes
 
