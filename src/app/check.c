@@ -104,6 +104,24 @@ static void print_time(
     check_warnings(&warnings);
 }
 
+/* What each feature that the scene leaves out would cost by itself. */
+static void print_left_out(const struct features *features)
+{
+    double element = features_element_bytes(features), pair = features_pair_bytes(features);
+    int column =
+        printf("    left out, with the bytes per particle and per pair that it would add:");
+    for (const struct feature_row *row = features_table; feature_table_more(row); row++) {
+        struct features more = *features;
+        if (!row->name || feature_table_value(row, features)) continue;
+        *((bool *)(void *)&more + row->at) = true;
+        double add[] = {features_element_bytes(&more) - element, features_pair_bytes(&more) - pair};
+        if (!(add[0] > 0) && !(add[1] > 0)) continue;
+        if (column > 80) column = printf("\n       ");
+        column += printf(" %s %g + %g;", row->name, add[0], add[1]);
+    }
+    printf("\n");
+}
+
 static void print_all(
     const struct scene *scene, const struct walls *walls, const struct elements_host *elements)
 {
@@ -115,12 +133,14 @@ static void print_all(
     print_time(scene, walls, elements);
     check_output(scene);
     check_features(features_table, &features);
-    double per_element = check_element_bytes(&features), per_pair = check_pair_bytes(&features);
+    double per_element = features_element_bytes(&features),
+           per_pair = features_pair_bytes(&features);
     printf("\nmemory on the devices: %.0f bytes per particle and %.0f per neighbour pair; %.1f MiB "
            "with "
            "%.2g pairs per particle, as in a dense packing\n",
         per_element, per_pair,
         (per_element + dense_pairs * per_pair) * (double)elements->n / 1048576, dense_pairs);
+    print_left_out(&features);
 }
 
 int check_scene(const struct comm *comm, const struct scene *scene, bool resolved)

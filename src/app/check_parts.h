@@ -20,10 +20,4 @@ void check_features(const struct feature_row *table, const void *features);
  * elements. */
 void check_contacts(const struct scene *scene, const struct elements_host *elements);
 
-/* Device memory [byte] per element without pairs, and per listed pair; for one rank, so without
- * ghosts, and without walls. Arrays that have grown hold up to a quarter more, and never shrink:
- * what counts is the largest number of pairs so far. */
-double check_element_bytes(const struct features *features);
-double check_pair_bytes(const struct features *features);
-
 #endif

@@ -54,4 +54,10 @@ char *features_options(const struct features *features, enum features_program pr
 
 extern const struct feature_row features_table[];
 
+/* Device memory [byte] per element without pairs, and per listed pair; for one rank, so without
+ * ghosts, and without walls. Arrays that have grown hold up to a quarter more, and never shrink:
+ * what counts is the largest number of pairs so far. features_memory.c. */
+double features_element_bytes(const struct features *features);
+double features_pair_bytes(const struct features *features);
+
 #endif

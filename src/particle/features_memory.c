@@ -1,17 +1,17 @@
 /* Device memory per element, from the widths that the kernels themselves use
  * (contact_memory.h). */
-#include "check_parts.h"
+#include "features.h"
 
 #include "kernels/contact/contact_memory.h"
 #include "kernels/particle/particle_words.h"
-#include "particle/particles.h"
+#include "particles.h"
 
 /* What the program of pairs is built with. */
 #define HAS(flag) feature_table_option(features_table, features, FEATURES_PAIR, "WITH_" #flag)
 
 /* Two generations of lists and of what contacts remember, one of results and losses. Rows list a
  * pair twice, with index and gid. */
-double check_pair_bytes(const struct features *features)
+double features_pair_bytes(const struct features *features)
 {
     size_t real_bytes = particles_real(features), whole = sizeof(cl_int); /* [byte] */
     /* rows; pair_i, pair_j, incidence of both */
@@ -23,7 +23,7 @@ double check_pair_bytes(const struct features *features)
 
 /* State now and spare, place and reach of the last lists, force and torque; indices of cells, lists
  * and owners. */
-double check_element_bytes(const struct features *features)
+double features_element_bytes(const struct features *features)
 {
     /* [byte] */
     size_t real_bytes = particles_real(features), preal_bytes = particles_preal(features);

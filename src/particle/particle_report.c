@@ -69,6 +69,15 @@ void particle_report_features(const struct sim *s, struct report *r)
     record_features(r, features_table, &s->particle->features);
 }
 
+/* What the features of the scene need; what a run has allocated is device_bytes_per_element. */
+static void report_memory(const struct features *features, struct report *r)
+{
+    report_begin(r, "memory");
+    report_number(r, "element_bytes", features_element_bytes(features));
+    report_number(r, "pair_bytes", features_pair_bytes(features));
+    report_end(r);
+}
+
 static void report_trust(struct sim *s, struct report *r, const struct energy_sums *now)
 {
     struct particle_run *run = s->particle;
@@ -92,6 +101,7 @@ void particle_report_state(struct sim *s, struct report *r, bool observed)
     if (observed) energy_now(s, &now);
     energy_terms_report(energy_table, r, &run->energy_start, &now, measured, measured && observed);
     report_numbers(r, "momentum", now.momentum, 3);
+    report_memory(&run->features, r);
     overlap_report(s, r, observed);
     if (observed) report_trust(s, r, &now);
 }
