@@ -5,7 +5,6 @@ import sys
 from democles import accuracy_series as series
 
 KINDS = ("largest", "rms", "final", "rate", "crossing")
-CLEAN = 0.2  # the order is clean if it is this near to a whole number, or the same twice
 FLOOR = 1e-11  # of the scale: below it there is no order, rounding is part of the error
 
 
@@ -22,14 +21,16 @@ class Study:
     def __init__(self, options, plan):
         self.options, self.plan, self.by = options, plan, options.by
         self.runs = [run for run in plan.runs if run.is_done]
-        self.values, self.order, self.notes = {}, {}, []
+        self.values, self.order, self.notes, self.unknown = {}, {}, [], set()
         for run in [*self.runs, *filter(None, [plan.reference]), *plan.starts]:
             if run.is_done:
                 self.values[run] = self.load(run)
         self.finest = min(self.runs, key=lambda run: run.fineness())
-        self.reference_run, self.fixed = None, {}
+        self.reference_run, self.fixed, self.clean = None, {}, None
         self.reference, self.reference_text = self.find_reference()
         self.choose_columns()
+        if self.clean is not None:
+            self.take_extrapolated()
         self.scales = {name: self.scale(name) for name in self.columns}
         self.levels = {name: self.level(name) for name in self.columns}
         self.compare_all()
@@ -58,19 +59,27 @@ class Study:
                     f"accuracy: the reference, {plan.reference.label}: {plan.reference.reason}"
                 )
             return self.values[plan.reference], plan.reference.label
-        columns = dict(self.values[self.finest])
-        if options.reference == "finest":
-            self.reference_run = self.finest
-            return columns, f"{self.finest.label}, the finest"
-        clean = self.extrapolated()
+        self.reference_run = self.finest
+        if options.reference == "richardson":
+            self.clean = self.extrapolated()
+        return dict(self.values[self.finest]), f"{self.finest.label}, the finest"
+
+    def take_extrapolated(self):
+        """Of the chosen columns those that are clean; of the others the finest run stands, whose
+        own error is then not known."""
+        clean = {name: column for name, column in self.clean.items() if name in self.columns}
+        rest = [name for name in self.columns if name not in clean]
         if not clean:
-            self.reference_run = self.finest
             self.notes.append("No order is clean: nothing is extrapolated, the finest run stands.")
-            return columns, f"{self.finest.label}, the finest"
-        if len(clean) < len(columns):
-            rest = ", ".join(name for name in columns if name not in clean)
-            self.notes.append(f"Not extrapolated, since their order is not clean: {rest}.")
-        return {**columns, **clean}, "Richardson's extrapolation"
+            return
+        if rest:
+            self.notes.append(
+                f"Not extrapolated, since their order is not clean: {', '.join(rest)}. There the "
+                "finest run is the reference."
+            )
+        self.reference.update(clean)
+        self.unknown = {(self.finest, name) for name in rest}
+        self.reference_run, self.reference_text = None, "Richardson's extrapolation"
 
     def extrapolated(self):
         """Of the columns whose order is clean in the finest group."""
@@ -84,7 +93,7 @@ class Study:
                 self.three(name, group[k - 2 : k + 1], sizes[k - 2 : k + 1])
                 for k in range(2, len(group))
             ]
-            if is_clean(orders):
+            if series.is_clean(orders):
                 middle = self.values[group[-2]][name]
                 column = series.extrapolate(middle, fine, sizes[-2] / sizes[-1], orders[-1])
                 if column:
@@ -170,14 +179,14 @@ class Study:
         own, span = self.derived(name, column), float(column.time[-1] - column.time[0])
         unit = {"final": scale, "rate": scale / span if span > 0 else math.nan}
         unit["crossing"] = wanted["crossing"]
-        numbers = {what: apart(own[what], wanted[what]) for what in own}
+        numbers = {what: series.apart(own[what], wanted[what]) for what in own}
         for what in own:
             if (name, what) in self.fixed:
                 unit[what] = abs(self.fixed[name, what])
         return {
-            "largest": over(far[0], scale),
-            "rms": over(far[1], scale),
-            **{what: over(value, unit[what]) for what, value in numbers.items()},
+            "largest": series.over(far[0], scale),
+            "rms": series.over(far[1], scale),
+            **{what: series.over(value, unit[what]) for what, value in numbers.items()},
         }, far
 
     def compare_all(self):
@@ -187,6 +196,8 @@ class Study:
             for name in self.columns:
                 reference = self.reference.get(name)
                 pairs[name] = self.relative(name, own[name], reference, self.wanted(name))
+                if (run, name) in self.unknown:
+                    pairs[name] = dict.fromkeys(KINDS, math.nan), (math.nan, math.nan)
             self.errors[run] = {name: pair[0] for name, pair in pairs.items()}
             self.absolute[run] = {name: pair[1] for name, pair in pairs.items()}
             self.numbers[run] = {name: self.derived(name, own[name]) for name in self.columns}
@@ -213,7 +224,7 @@ class Study:
             self.order[run] = dict.fromkeys(self.columns, math.nan)
             sizes = [r.size(graded) for r in group[max(k - 2, 0) : k + 1]] if graded else []
             for name in self.columns if k > 0 and all(sizes) else []:
-                if self.reference_run in group:
+                if self.reference_run in group or (self.finest, name) in self.unknown:
                     if k > 1:
                         self.order[run][name] = self.three(name, group[k - 2 : k + 1], sizes)
                     continue
@@ -237,12 +248,12 @@ class Study:
                 for k, a in enumerate(starts)
                 for b in starts[:k]
             ]
-            found[name] = {kind: highest(pair[kind] for pair in pairs) for kind in KINDS}
+            found[name] = {kind: series.highest(pair[kind] for pair in pairs) for kind in KINDS}
         return found
 
     def largest_scatter(self, measure=None):
         """Of the columns of a measure, or of all; NaN: none is known."""
-        return highest(
+        return series.highest(
             limit[self.by]
             for name, limit in self.scatter.items()
             if measure in (None, name.split(".")[0])
@@ -270,28 +281,3 @@ class Study:
             or not self.is_distinguishable(run, name)
             for name, error in self.errors[run].items()
         )
-
-
-def is_clean(orders):
-    """The last of them: near to a whole number, or the same as the one before."""
-    if not orders[-1] > 0.5:
-        return False
-    near = [round(orders[-1]), *orders[-2:-1]]
-    return any(abs(orders[-1] - other) <= CLEAN for other in near)
-
-
-def over(value, scale):
-    """value/scale; what does not differ has no error, whatever the scale."""
-    if value == 0:
-        return 0.0
-    return value / abs(scale) if scale else math.nan
-
-
-def apart(value, wanted):
-    """Infinite where the reference has a value, as the time of a crossing, and the run has none."""
-    return math.inf if math.isnan(value) and not math.isnan(wanted) else abs(value - wanted)
-
-
-def highest(values):
-    known = [value for value in values if not math.isnan(value)]
-    return max(known) if known else math.nan

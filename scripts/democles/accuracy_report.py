@@ -17,11 +17,6 @@ def machine(result):
     )
 
 
-def evaluations(record):
-    """How often a run has computed the forces of all elements."""
-    return record["force_evaluations"]
-
-
 def cell(value):
     return None if value is None or math.isnan(value) else value
 
@@ -44,7 +39,7 @@ def csv_rows(options, result):
             continue
         r = run.record
         head += [r["ranks"], r["precision"], r["scheme"], r["dt"], r["steps"]]
-        head += [evaluations(r), run.seconds, len(run.records)]
+        head += [r["force_evaluations"], run.seconds, len(run.records)]
         for name in result.columns:
             yield head + csv_cells(options, result, run, name)
 
@@ -101,7 +96,9 @@ def table_rows(result):
             "reference" if run is result.reference_run else "not distinguishable" if alike else ""
         )
         errors = [None if math.isnan(error) else 100 * error for error, _ in worst]
-        rows.append([run.label, r["dt"], evaluations(r), run.seconds, *errors, cell(order), note])
+        rows.append(
+            [run.label, r["dt"], r["force_evaluations"], run.seconds, *errors, cell(order), note]
+        )
     return titles, rows
 
 
@@ -146,18 +143,28 @@ def advice(options, result):
     good = [run for run in runs if result.is_good(run)]
     if not good:
         return none_good(result, runs, target)
-    best = min(good, key=lambda run: run.seconds)
+    best = cheapest(good)
     error, name = result.worst(best)
-    text = f"{best.label} is the cheapest setting within {target}: its error ({options.by}) is "
-    text += f"{100 * error:.2g} % ({name}) in {best.seconds:.3g} s"
-    if not result.is_distinguishable(best, name):
-        text += ", not distinguishable from the scatter of random starts"
+    what = f"its error ({options.by}) is {100 * error:.2g} % ({name}) in {best.seconds:.3g} s"
+    if error <= options.target:
+        text = f"{best.label} is the cheapest setting within {target}: {what}"
+    else:
+        text = f"{best.label} is the cheapest setting that cannot be told from other starts: {what}"
+        scatter = 100 * result.scatter[name][options.by]
+        text += f", random starts differ by {scatter:.2g} %, and less than that nobody can promise"
     reference = result.reference_run or result.plan.reference
     if reference and reference.is_done and best.seconds > 0:
         text += f"; the reference takes {reference.seconds / best.seconds:.3g} times as long"
     if is_coarsest(result, best):
         text += "; it is the coarsest that has run, and a coarser one may do"
     return text + "."
+
+
+def cheapest(runs):
+    """By time; of runs that differ by no more than clocks do, the one that computes least."""
+    least = min(run.seconds for run in runs)
+    near = [run for run in runs if run.seconds <= 1.1 * least]
+    return min(near, key=lambda run: run.record["force_evaluations"] * run.record["elements"])
 
 
 def is_coarsest(result, best):

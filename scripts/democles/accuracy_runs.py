@@ -15,7 +15,7 @@ import sys
 
 import yaml
 
-from democles import study
+from democles import expect, study
 
 OWN = ("ranks", "device")  # of the command line, not of the scene
 # Exit codes that are a result: the scene or a setting is refused, no device can do it, unstable.
@@ -82,8 +82,11 @@ class Run:
         """What the key says of how fine the run is: smaller is finer; None: not a number."""
         if key in ("time.step", "time.safety"):
             return self.record["dt"]
+        if key not in self.setting:
+            return None
+        resolved = dict(leaves(expect.scene(self.folders[0])))  # without units
         try:
-            return float(self.setting[key].split()[0])
+            return float(resolved[key.split(",")[0]])
         except (KeyError, ValueError):
             return None
 

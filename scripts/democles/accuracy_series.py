@@ -6,6 +6,7 @@ import numpy
 
 from democles import plot
 
+CLEAN = 0.2  # the order is clean if it is this near to a whole number, or the same twice
 NOISE = 1e-12  # of the scale: differences below it are rounding
 
 
@@ -149,3 +150,28 @@ def extrapolate(middle, fine, ratio, p):
     if not same or len(a) != len(fine.time):
         return None
     return Column(fine.time, a + (a - b) / (ratio**p - 1), fine.unit)
+
+
+def is_clean(orders):
+    """The last of them: near to a whole number, or the same as the one before."""
+    if not orders[-1] > 0.5:
+        return False
+    near = [round(orders[-1]), *orders[-2:-1]]
+    return any(abs(orders[-1] - other) <= CLEAN for other in near)
+
+
+def over(value, scale):
+    """value/scale; what does not differ has no error, whatever the scale."""
+    if value == 0:
+        return 0.0
+    return value / abs(scale) if scale else math.nan
+
+
+def apart(value, wanted):
+    """Infinite where the reference has a value, as the time of a crossing, and the run has none."""
+    return math.inf if math.isnan(value) and not math.isnan(wanted) else abs(value - wanted)
+
+
+def highest(values):
+    known = [value for value in values if not math.isnan(value)]
+    return max(known) if known else math.nan

@@ -6,13 +6,14 @@ import io
 import json
 import math
 import os
+import pathlib
 import sys
 import tempfile
 import unittest
 import unittest.mock
 
 sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../scripts"))
-from democles import accuracy  # noqa: E402
+from democles import accuracy, accuracy_runs  # noqa: E402
 
 DEMOCLES = os.path.abspath(sys.argv[1])
 # k_n 1e4 N/m and m* 6.5e-4 kg touch for 8e-4 s: half of it, so that the motion is smooth.
@@ -54,8 +55,9 @@ class Accuracy(unittest.TestCase):
         self.out = os.path.join(self.folder.name, "study")
 
     def put(self, name, text):
-        with open(os.path.join(self.folder.name, name), "w") as file:
-            file.write(text)
+        path = pathlib.Path(self.folder.name) / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(text)
 
     def study(self, *args, scene="scene.yaml", figures=False):
         """Output and messages of the tool; in this process, since its modules take a second."""
@@ -138,17 +140,45 @@ class Accuracy(unittest.TestCase):
         # linear between times of the measure, h apart: a h^2/8 of a way at speed v, and the step
         self.assertAlmostEqual(float(rows[0]["crossing [s]"]), when, delta=1e-6)
 
+    def test_finest(self):
+        """Smallest cells first, whatever unit they are given in; then order, step and digits."""
+        rows = (
+            ("2.5e-3", "0.25 cm", 1e-6, "leapfrog", "single"),
+            ("2.5e-3", "2.5 mm", 1e-6, "leapfrog", "double"),
+            ("2.5e-3", "0.0025", 2e-6, "rk4", "single"),
+            ("1e-2", "10mm", 1e-7, "rk4", "double"),
+        )
+        runs = []
+        for k, (cell, given, dt, scheme, precision) in enumerate(rows):
+            self.put(f"{k}/resolved.yaml", f"bodies:\n  - name: a\n    cell: {cell}\n")
+            run = accuracy_runs.Run({"bodies.a.cell": given})
+            run.folders = [pathlib.Path(self.folder.name) / str(k)]
+            run.records = [{"dt": dt, "scheme": scheme, "precision": precision}]
+            runs.append(run)
+        found = sorted(range(4), key=lambda k: runs[k].fineness())
+        self.assertEqual(found, [2, 1, 0, 3])
+
     def test_starts(self):
         """An error below what starts differ by is not distinguishable."""
         self.put("fill.yaml", FILL)
         said, _ = self.study(
-            *("--vary", "time.step=4e-5,2e-5,1e-5", "--starts", "2", "--measure", "first"),
+            *(
+                "--vary",
+                "time.step=4e-5,2e-5,1e-5",
+                "--starts",
+                "2",
+                "--measure",
+                "first.x",
+                "--target",
+                "0",
+            ),
             scene="fill.yaml",
         )
         rows = self.rows("first.x")
         self.assertGreater(float(rows[0]["scatter: largest [1]"]), 1e-3)
         self.assertEqual(rows[0]["verdict"], "not distinguishable")
         self.assertIn("3 starts with time.step=2e-5 differ by up to", said)
+        self.assertIn("the cheapest setting that cannot be told from other starts", said)
         seeds = set()
         for folder, _, files in os.walk(os.path.join(self.out, "runs")):
             if "run.json" in files:
