@@ -1,5 +1,7 @@
+#define _GNU_SOURCE /* fopencookie */
 #include "files.h"
 #include "comm/fail.h"
+#include "signals.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -12,20 +14,52 @@
 #include <sys/sysmacros.h>
 #include <unistd.h>
 
+enum { PATIENCE = 50 }; /* between two looks for signals [ms] */
+
 static bool failed(char error[FILES_ERROR_SIZE], const char *what, const char *path)
 {
     snprintf(error, FILES_ERROR_SIZE, "cannot %s '%s': %s", what, path, strerror(errno));
     return false;
 }
 
+/* Waits for a writer, or obeys a request to stop: it is held while a run sets up, and SA_RESTART
+ * would go on with the read even where it is not. */
+static ssize_t read_patiently(void *cookie, char *text, size_t n)
+{
+    struct pollfd in = {.fd = *(int *)cookie, .events = POLLIN};
+    for (;;) {
+        signals_obey();
+        if (poll(&in, 1, PATIENCE) <= 0) continue;
+        ssize_t got = read(in.fd, text, n);
+        if (got >= 0 || (errno != EINTR && errno != EAGAIN)) return got;
+    }
+}
+
+static int close_cookie(void *cookie)
+{
+    int code = close(*(int *)cookie);
+    free(cookie);
+    return code;
+}
+
 FILE *files_input(const char *path)
 {
-    FILE *file = fopen(path, "rb");
+    /* O_NONBLOCK: the open of a pipe would wait for its writer, where no signal ends it */
+    int fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     struct stat status;
-    if (!file || fstat(fileno(file), &status) != 0 || isatty(fileno(file))) return file;
-    bool is_null = S_ISCHR(status.st_mode) && status.st_rdev == makedev(1, 3);
-    if (is_null || (!S_ISCHR(status.st_mode) && !S_ISBLK(status.st_mode))) return file;
-    fclose(file);
+    if (fd < 0) return NULL;
+    bool is_known = fstat(fd, &status) == 0;
+    bool is_null = is_known && S_ISCHR(status.st_mode) && status.st_rdev == makedev(1, 3);
+    if (is_null || (is_known && (S_ISREG(status.st_mode) || S_ISDIR(status.st_mode))))
+        return fdopen(fd, "rb");
+    if (is_known && (isatty(fd) || !(S_ISCHR(status.st_mode) || S_ISBLK(status.st_mode)))) {
+        static const cookie_io_functions_t patient = {
+            .read = read_patiently, .close = close_cookie};
+        int *cookie = fail_alloc(sizeof *cookie);
+        *cookie = fd;
+        return fopencookie(cookie, "rb", patient);
+    }
+    close(fd);
     errno = ENOTSUP;
     return NULL;
 }

@@ -17,8 +17,9 @@ char *files_read(const char *path, size_t *n, char error[FILES_ERROR_SIZE]);
  * as a device may: an ordinary file, a folder (reading of which is an error), or nothing. */
 bool files_is_ordinary(const char *path);
 
-/* Opens a file for reading, and waits for whoever writes into a pipe; NULL and errno. What never
- * ends, such as /dev/zero, is not opened. */
+/* Opens a file for reading; NULL and errno. Reading from a pipe or a terminal waits for whoever
+ * writes into it, and a request to stop ends the program meanwhile (signals_obey). What never ends,
+ * such as /dev/zero, is not opened. */
 FILE *files_input(const char *path);
 
 /* Whether an ordinary file, not a link, is there and begins with `text`. */

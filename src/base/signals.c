@@ -60,6 +60,20 @@ bool signals_wait(void)
     return any;
 }
 
+void signals_obey(void)
+{
+    sigset_t waiting, one;
+    if (sigpending(&waiting) != 0) sigemptyset(&waiting);
+    for (int i = 0; i < N_WANTED; i++) {
+        if (wanted[i] != seen && sigismember(&waiting, wanted[i]) != 1) continue;
+        signal(wanted[i], SIG_DFL);
+        raise(wanted[i]);
+        sigemptyset(&one);
+        sigaddset(&one, wanted[i]);
+        sigprocmask(SIG_UNBLOCK, &one, NULL);
+    }
+}
+
 void signals_install(void)
 {
     seen = 0;

@@ -30,5 +30,8 @@ void signals_hold(void);
 void signals_pass(void);
 /* Whether one of them waits. */
 bool signals_wait(void);
+/* Ends the program by the signal that waits or has been seen, if there is one, as if nobody had
+ * ever taken it: for waits without end before anything is written. */
+void signals_obey(void);
 
 #endif

@@ -168,6 +168,40 @@ class Owned(Files):
         writer.wait()
         self.assertEqual(self.text("d/scene.yaml"), SCENE)
 
+    def test_signal_while_waiting_for_a_pipe(self):
+        """Nobody opens it for writing, or somebody does and writes only a part."""
+        os.mkfifo(os.path.join(self.dir, "pipe"))
+        for part in (None, SCENE[:40]):
+            for number in (signal.SIGINT, signal.SIGTERM, signal.SIGUSR1):
+                words = [cli.DEMOCLES, "run", "pipe", "-o", "d"]
+                run = subprocess.Popen(words, cwd=self.dir, stderr=subprocess.PIPE)
+                pipe = os.path.join(self.dir, "pipe")
+                writer = os.open(pipe, os.O_RDWR) if part else None
+                if part:
+                    os.write(writer, part.encode())
+                self.sleeps_with(run, pipe)
+                run.send_signal(number)
+                try:
+                    self.assertEqual(run.wait(30), -number)
+                finally:
+                    run.kill()
+                    run.communicate()
+                if part:
+                    os.close(writer)
+                self.assertFalse(os.path.exists(os.path.join(self.dir, "d")))
+
+    def sleeps_with(self, run, path):
+        """Until the run has opened the file, or is gone."""
+        links = f"/proc/{run.pid}/fd"
+        while run.poll() is None:
+            for fd in os.listdir(links):
+                try:
+                    if os.readlink(os.path.join(links, fd)) == path:
+                        return
+                except OSError:
+                    pass
+            time.sleep(0.01)
+
     def test_list_of_frames_grows(self):
         """The list is continued in its place, not written anew for each frame."""
         self.good("run", "s.yaml", "-o", "d", "--set", "output.every=1e-5", "--steps", "40")
