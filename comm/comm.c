@@ -186,25 +186,37 @@ void comm_vote_begin(const struct comm *comm, struct comm_vote *vote, int32_t va
             &vote->mine, &vote->all, 1, MPI_INT32_T, MPI_BOR, comm->world, &vote->request));
 }
 
-void comm_set_naps(struct comm *comm, bool naps)
+void comm_set_naps(struct comm *comm, bool naps, double spin_ns)
 {
     comm->naps = naps;
+    comm->spin_ns = spin_ns;
 }
 
-void comm_pause(const struct comm *comm)
+/* Whether a wait that began then is still short. Its first call notes when it began. */
+static bool is_short(struct timespec *began, double most_ns)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    if (began->tv_sec == 0 && began->tv_nsec == 0) *began = now;
+    return (double)(now.tv_sec - began->tv_sec) * 1e9 + (double)(now.tv_nsec - began->tv_nsec) <
+           most_ns;
+}
+
+void comm_pause(const struct comm *comm, struct timespec *began)
 {
     const struct timespec nap = {0, 5000}; /* s, ns */
-    if (comm->naps) nanosleep(&nap, NULL);
-    else sched_yield();
+    if (!comm->naps) sched_yield();
+    else if (!is_short(began, comm->spin_ns)) nanosleep(&nap, NULL);
 }
 
 int32_t comm_vote_end(const struct comm *comm, struct comm_vote *vote)
 {
     if (!vote->open) return 0;
     int done = vote->request == MPI_REQUEST_NULL;
+    struct timespec began = {0};
     while (!done) {
         check_mpi(MPI_Test(&vote->request, &done, MPI_STATUS_IGNORE));
-        if (!done) comm_pause(comm);
+        if (!done) comm_pause(comm, &began);
     }
     vote->open = false;
     return vote->all;

@@ -8,13 +8,15 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <time.h>
 
 struct comm {
     MPI_Comm world; /* a duplicate, owned */
     MPI_Comm node;  /* ranks that share this node's memory, owned */
     int rank, n_rank;
     int node_rank, n_node_rank;
-    bool naps; /* comm_pause sleeps: the device computes on this thread's core */
+    bool naps;      /* comm_pause sleeps: something else computes on this thread's core */
+    double spin_ns; /* but not before a wait has lasted as long as this */
 };
 
 /* MPI_Init (with OMPIO switched off, see comm.c) and MPI_Finalize. Collective. Once per process.
@@ -41,11 +43,12 @@ void comm_node_barrier(const struct comm *comm);
 /* bit-or over the ranks of this node, in place */
 void comm_node_or(const struct comm *comm, void *bits, size_t bytes);
 
-/* Backs off between two polls for messages: sleeps for some microseconds if `naps`, else yields the
- * core to whoever waits for it. */
-void comm_pause(const struct comm *comm);
-/* Whether comm_pause sleeps from now on. */
-void comm_set_naps(struct comm *comm, bool naps);
+/* Backs off between two polls for messages. If `naps`: looks again at once for the first `spin_ns`
+ * of a wait, then sleeps for some microseconds; else yields the core to whoever waits for it.
+ * `began`: the wait's, to be given as {0} with its first poll. */
+void comm_pause(const struct comm *comm, struct timespec *began);
+/* How comm_pause waits from now on. */
+void comm_set_naps(struct comm *comm, bool naps, double spin_ns);
 
 /* One bit-or of an int over all ranks that runs beside other work: started now, asked for later. */
 struct comm_vote {

@@ -201,6 +201,7 @@ bool halo_poll(struct halo *halo)
 void halo_end(struct halo *halo)
 {
     struct internal *in = halo->internal;
+    struct timespec began = {0};
     int done = 0;
     assert(halo->n_open == 0);
     for (;;) {
@@ -208,7 +209,7 @@ void halo_end(struct halo *halo)
             MPI_Testall(halo->n_send, halo->request + halo->n_recv, &done, MPI_STATUSES_IGNORE));
         if (done) break;
         /* MPI_Waitall would spin, where the device's workers may need the core */
-        comm_pause(halo->comm);
+        comm_pause(halo->comm, &began);
     }
     in->sending = false;
 }

@@ -14,8 +14,14 @@
  * bound: give each rank its share of the cores that the node's ranks may use together, at most
  * those it may use itself, at least one. Before the first OpenCL call, because the workers start
  * there. The name depends on pocl's version: up to 3, 4 to 6, from 7. A setting of the user's own
- * wins. */
-static void limit_pocl_threads(const struct comm *comm)
+ * wins.
+ *
+ * With one core pocl's driver without workers is the better one: to hand a command to a worker and
+ * to wake the host again takes some 200 us per step where both share the core. Newer versions call
+ * it cpu-minimal, and know its old name. `choice` may ask for the other one.
+ *
+ * Returns whether each rank of the node has a core of its own. */
+static bool set_up_pocl(const struct comm *comm, const char *choice)
 {
     cpu_set_t own, all;
     char text[16];
@@ -25,12 +31,15 @@ static void limit_pocl_threads(const struct comm *comm)
     all = own;
     comm_node_or(comm, &all, sizeof all);
     int n = CPU_COUNT(&all) / comm->n_node_rank;
+    bool own_core = n >= 1;
     if (n > CPU_COUNT(&own)) n = CPU_COUNT(&own);
     if (n < 1) n = 1;
     snprintf(text, sizeof text, "%d", n);
     setenv("POCL_MAX_PTHREAD_COUNT", text, 0);
     setenv("POCL_CPU_MAX_CU_COUNT", text, 0);
     setenv("POCL_MAX_COMPUTE_UNITS", text, 0);
+    if (n == 1 && !(choice && strstr(choice, "pthread"))) setenv("POCL_DEVICES", "basic", 0);
+    return own_core;
 }
 
 /* What was looked for, what there is, and how to go on. */
@@ -130,7 +139,7 @@ struct device *device_open(
     cl_int code;
     int node_rank = comm ? comm->node_rank : 0, n_node_rank = comm ? comm->n_node_rank : 1;
 
-    if (comm) limit_pocl_threads(comm);
+    bool own_core = comm && set_up_pocl(comm, choice);
     int n_entry = device_find(&entry, &code);
     int *order = fail_alloc((size_t)n_entry * sizeof *order);
     int n = device_deal(entry, n_entry, choice, need_fp64, order);
@@ -155,6 +164,7 @@ struct device *device_open(
                   "names another folder",
             cache_folder_path(), cache_folder_instead_of());
     dev->profile = profile;
+    dev->own_core = own_core;
     dev->n_share = dev->type & CL_DEVICE_TYPE_CPU ? n_node_rank : (n_node_rank + n - 1) / n;
     open_queues(dev);
     return dev;

@@ -48,6 +48,9 @@ struct device {
     bool one_lane;
     /* builds and first launches are then serialised per node, see kernel_cache.h */
     bool is_pocl;
+    /* a command runs in the call that enqueues it, on the host's thread: pocl without workers */
+    bool at_once;
+    bool own_core; /* each rank of this node has a core of its own */
     bool profile;
     /* [byte] of the whole device: on a CPU the node's, shared by all its ranks */
     cl_ulong global_mem;
@@ -67,13 +70,14 @@ struct device {
     struct trace *trace;
 };
 
-/* Collective. `choice`: NULL, or "PLATFORM:DEVICE" where each part is an index, a part of the name
- * (or of the platform's version: "pocl") in any case, or empty for any; "PLATFORM" alone means any
- * device of it. Of the devices that match, the best kind (GPU or accelerator, then CPU) is dealt
- * out by node-local rank, those with fp64 alone if `need_fp64` and there are any. Limits pocl to
- * this rank's share of the node's cores; has to be the first use of OpenCL in the process. No
- * device, no match, no fp64 although needed: message of what was looked for, what is there and how
- * to go on, exit code 4, once for all ranks. */
+/* Collective. `choice`: NULL, or "PLATFORM:DEVICE" where each part is an index, a part of the
+ * name (or of the platform's version: "pocl") in any case, or empty for any; "PLATFORM" alone
+ * means any device of it. Of the devices that match, the best kind (GPU or accelerator, then CPU)
+ * is dealt out by node-local rank, those with fp64 alone if `need_fp64` and there are any. Limits
+ * pocl to this rank's share of the node's cores, and to its driver without threads where that is
+ * one; has to be the first use of OpenCL in the process. No device, no match, no fp64 although
+ * needed: message of what was looked for, what is there and how to go on, exit code 4, once for
+ * all ranks. */
 struct device *device_open(
     const struct comm *comm, const char *choice, bool need_fp64, bool profile);
 

@@ -107,6 +107,8 @@ static void query(cl_platform_id platform, cl_device_id id, struct device_entry 
     d->is_pocl = strstr(d->platform_name, "Portable Computing Language");
     /* others vectorise over the work-items of a group */
     d->one_lane = d->is_pocl && (d->type & CL_DEVICE_TYPE_CPU);
+    d->at_once = d->is_pocl && (!strncmp(d->name, "basic", strlen("basic")) ||
+                                   !strncmp(d->name, "cpu-minimal", strlen("cpu-minimal")));
     bus_address(id, entry->bus, sizeof entry->bus);
     entry->unusable = d->type & CL_DEVICE_TYPE_CUSTOM       ? "not programmable"
                       : !available                          ? "not available"

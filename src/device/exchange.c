@@ -64,6 +64,27 @@ static void complete_sends(struct device *dev, struct halo *halo, struct timers 
     timer_end(timers, TIMER_EXCHANGE);
 }
 
+/* Waits until the send buffer is full, and sends. A host that shares cores with the device sleeps
+ * meanwhile; elsewhere it drives MPI, and does not trust the driver's wait, which may be a spin
+ * without progress. */
+static void send(struct exchange *x, struct timers *timers)
+{
+    struct device *dev = x->dev;
+    struct timespec began = {0};
+    trace_lap(dev->trace, "enqueue");
+    if (device_shares_cores(dev)) check_cl(clWaitForEvents(1, &x->read_event));
+    while (!device_event_done(x->read_event)) {
+        halo_poll(x->halo);
+        comm_pause(x->halo->comm, &began);
+    }
+    trace_lap(dev->trace, "read");
+    timer_begin(timers, TIMER_EXCHANGE);
+    halo_begin_send(x->halo);
+    timer_end(timers, TIMER_EXCHANGE);
+    trace_lap(dev->trace, "send");
+    trace_messages(dev->trace, x->halo->n_send, x->halo->send_rank, true);
+}
+
 void exchange_begin(struct exchange *x, struct launch *pack, struct timers *timers)
 {
     complete_sends(x->dev, x->halo, timers);
@@ -77,37 +98,19 @@ void exchange_begin(struct exchange *x, struct launch *pack, struct timers *time
     halo_begin_recv(x->halo);
     timer_end(timers, TIMER_EXCHANGE);
     trace_lap(x->dev->trace, "pack");
-}
-
-/* Waits until the send buffer is full, and sends. A host that shares cores with the device sleeps
- * meanwhile; elsewhere it drives MPI, and does not trust the driver's wait, which may be a spin
- * without progress. */
-static void send(struct exchange *x, struct timers *timers)
-{
-    struct device *dev = x->dev;
-    trace_lap(dev->trace, "enqueue");
-    if (device_shares_cores(dev)) check_cl(clWaitForEvents(1, &x->read_event));
-    while (!device_event_done(x->read_event)) {
-        halo_poll(x->halo);
-        comm_pause(x->halo->comm);
-    }
-    trace_lap(dev->trace, "read");
-    timer_begin(timers, TIMER_EXCHANGE);
-    halo_begin_send(x->halo);
-    timer_end(timers, TIMER_EXCHANGE);
-    trace_lap(dev->trace, "send");
-    trace_messages(dev->trace, x->halo->n_send, x->halo->send_rank, true);
+    if (x->dev->at_once) send(x, timers); /* else the messages would wait for the interior */
 }
 
 static void receive(
     struct device *dev, struct halo *halo, cl_event *nearly_done, struct timers *timers)
 {
+    struct timespec began = {0};
     if (device_shares_cores(dev)) check_cl(clWaitForEvents(1, nearly_done));
     check_cl(clReleaseEvent(*nearly_done));
     trace_lap(dev->trace, "device");
     timer_begin(timers, TIMER_EXCHANGE);
     timer_begin(timers, TIMER_WAIT);
-    while (!halo_poll(halo)) comm_pause(halo->comm);
+    while (!halo_poll(halo)) comm_pause(halo->comm, &began);
     timer_end(timers, TIMER_WAIT);
     timer_end(timers, TIMER_EXCHANGE);
     trace_lap(dev->trace, "receive");
@@ -117,7 +120,7 @@ static void receive(
 const cl_event *exchange_swap(struct exchange *x, struct buffer *to, size_t offset,
     cl_event *nearly_done, struct timers *timers)
 {
-    send(x, timers);
+    if (!x->dev->at_once) send(x, timers);
     receive(x->dev, x->halo, nearly_done, timers);
     buffer_write_begin(to, x->dev->copy, offset, (size_t)x->n_recv * x->record,
         x->recv_staging.host, NULL, &x->written_event);
