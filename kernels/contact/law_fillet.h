@@ -4,9 +4,9 @@
  * On a mesh a sphere has one contact for each local minimum of the distance (law_wall.h). In a
  * valley that is flat enough these overlap at once, though the surface that the mesh stands for is
  * met once, and each one ends with a jump when its foot leaves its triangle. So of contacts of one
- * wall whose normals are close the deepest acts, and the valley between it and its neighbour is
- * rounded: a ball of radius rho, a little larger than the sphere, rolls through it and cannot reach
- * further. With c = n_i.n_j and b = rho - distance that surface lies at the distance
+ * wall whose normals are close that in the deepest valley acts, and the valley between it and its
+ * neighbour is rounded: a ball of radius rho, a little larger than the sphere, rolls through it and
+ * cannot reach further. With c = n_i.n_j and b = rho - distance that surface lies at the distance
  *
  *     rho - ((b_i^2 + b_j^2 - 2 c b_i b_j)/(1 - c^2))^(1/2)   where b_i > c b_j and b_j > c b_i,
  *     the smaller of both elsewhere;
@@ -20,7 +20,10 @@
  *
  * How close: the contact that is less deep acts with the factor 1 - fillet_hides(c), from 0 at
  * FILLET_SMOOTH to 1 at FILLET_CORNER, a band because normals at edges and corners turn as the
- * sphere moves. rho falls to the radius at FILLET_OPEN, so corners keep their shape. */
+ * sphere moves. rho falls to the radius at FILLET_OPEN, so corners keep their shape.
+ *
+ * The smallest distance in any valley is continuous: it is the potential's argument, also where the
+ * nearest face has no part in it, as a facet that the ball cannot touch between its neighbours. */
 #ifndef DEMOCLES_LAW_FILLET_H
 #define DEMOCLES_LAW_FILLET_H
 
@@ -47,14 +50,35 @@
 struct fillet_plane {
     pvec3 n;
     preal distance;
+    /* radius of the largest ball that touches the facets of this surface between their valleys,
+     * WALL_FAR on a facet without one [m] */
+    preal room;
 };
 
-LAW struct fillet_plane fillet_plane(pvec3 n, preal distance)
+LAW struct fillet_plane fillet_plane(pvec3 n, preal distance, preal room)
 {
     struct fillet_plane p;
     p.n = n;
     p.distance = distance;
+    p.room = room;
     return p;
+}
+
+/* rho - radius in the flattest valley between two facets: at most half of what they leave, since a
+ * ball that cannot touch them makes valleys of faces that are no neighbours. */
+LAW preal fillet_grown(preal radius, preal room_i, preal room_j)
+{
+    preal left = (preal)0.5 * (r_min(room_i, room_j) - radius);
+    return r_min(radius * FILLET_ROOM, r_max(left, (preal)0));
+}
+
+/* Which of two contacts acts for the other: the deeper one in its valley, else, where both form the
+ * same valley, the deeper face, else the lower number. */
+LAW int fillet_is_first(
+    preal valley, preal distance, int k, preal other_valley, preal other_distance, int other)
+{
+    if (valley < other_valley || other_valley < valley) return valley < other_valley;
+    return distance < other_distance || (!(other_distance < distance) && k < other);
 }
 
 /* How much of a contact a deeper one takes, 0 to 1: the smooth step of the cosine. */
@@ -72,7 +96,8 @@ LAW struct fillet_plane fillet_of(struct fillet_plane i, struct fillet_plane j, 
     struct fillet_plane r;
     pvec3 apart = p3_sub(i.n, j.n);
     preal e = (preal)0.5 * p3_dot(apart, apart);
-    preal rho = radius + radius * FILLET_ROOM * r_max((preal)1 - e / FILLET_OPEN, (preal)0);
+    preal rho =
+        radius + fillet_grown(radius, i.room, j.room) * r_max((preal)1 - e / FILLET_OPEN, (preal)0);
     preal b_i = rho - i.distance, b_j = rho - j.distance, gap = b_i - b_j;
     int meet = e > FILLET_TINY && e < FILLET_OPEN && gap + e * b_j > 0 && e * b_i > gap;
     preal safe = meet ? e : (preal)1;
@@ -84,6 +109,7 @@ LAW struct fillet_plane fillet_of(struct fillet_plane i, struct fillet_plane j, 
     r.n.y = meet ? m_i * i.n.y + m_j * j.n.y : i.n.y;
     r.n.z = meet ? m_i * i.n.z + m_j * j.n.z : i.n.z;
     r.distance = meet ? rho - b : i.distance;
+    r.room = i.room;
     return r;
 }
 

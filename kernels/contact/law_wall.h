@@ -10,14 +10,15 @@
  *   WALL_RECTANGLE   centre         unit axis          unit axis             half edge (b)  (c)
  *   WALL_PIPE        start of axis  unit axis          unit, across the axis radius         length
  *   WALL_ROD         start of axis  unit axis          unit, across the axis radius         length
- *   WALL_TRIANGLE    corner         corner             corner                -              -
+ *   WALL_TRIANGLE    corner         corner             corner                room           room
  *
  * One-sided: a plane pushes towards m from any depth, a rod (cylinder with elements outside) is a
  * solid with flat ends and pushes outwards from any depth. Two-sided: rectangle, triangle and pipe
  * (cylinder with elements inside: a thin shell with open ends); they lose a sphere whose centre
  * crosses.
  *
- * Kinds that a scene does not have are compiled out: WITH_PLANE, WITH_RECTANGLE, WITH_CYLINDER,
+ * room: of law_fillet.h, on the side of the normal (b - a) x (c - a), and on the other side. Kinds
+ * that a scene does not have are compiled out: WITH_PLANE, WITH_RECTANGLE, WITH_CYLINDER,
  * WITH_TRIANGLE, each 0 or 1. */
 #ifndef DEMOCLES_LAW_WALL_H
 #define DEMOCLES_LAW_WALL_H
@@ -233,6 +234,14 @@ LAW struct wall_closest wall_closest(struct wall_primitive w, pvec3 x)
     if (WITH_TRIANGLE && w.kind == WALL_TRIANGLE) return wall_closest_triangle(w, x);
     /* a kind that this program was built without: out of reach */
     return wall_one_sided(WALL_FAR, p3(0, 0, 1));
+}
+
+/* The room of a triangle on the side of the centre x, in the wall's frame. */
+LAW preal wall_room(struct wall_primitive w, pvec3 x)
+{
+    if (!WITH_TRIANGLE || w.kind != WALL_TRIANGLE) return WALL_FAR;
+    pvec3 m = p3_cross(p3_sub(w.b, w.a), p3_sub(w.c, w.a));
+    return p3_dot(p3_sub(x, w.a), m) < 0 ? w.s : w.r;
 }
 
 /* One contact per local minimum of the distance. A sphere over a mesh sees several triangles; over

@@ -23,6 +23,9 @@
 /* A wall's pose in preal: rotation 9 (rows), translation 3; velocity 3, spin 3, centre 3 of the
  * half step; active; velocity 3, spin 3, centre 3 of the step itself. */
 #define POSE_WIDTH 31
+/* preal of a candidate of a joined wall (wall_keep.cl). */
+#define NEAR_WIDTH 6
+#define NEAR_VALLEY 5
 /* Real of a wall contact's result: force, and torque where something rotates, padded to fours. */
 #define WALL_RESULT_WIDTH(with_rotation) ((with_rotation) ? 8 : 4)
 

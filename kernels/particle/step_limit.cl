@@ -56,7 +56,8 @@ LAW struct limit_sums limit_add_wall(struct limit_sums s, struct limit_element a
     (void)pose;
     k = wall_closest(w, a.x);
 #endif
-    struct fillet_plane met = fillet_of(fillet_plane(k.n, k.distance), other, (preal)a.r);
+    struct fillet_plane met =
+        fillet_of(fillet_plane(k.n, k.distance, other.room), other, (preal)a.r);
     n = v3_of_p3(met.n);
     delta = (real)((preal)a.r - met.distance);
     ends.w_i = a.w;
@@ -115,8 +116,9 @@ __kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void step_limit(int 
 #if WITH_JOINED
             if (!(keep[k] > 0)) continue;
             struct fillet_plane other = wall_partner(near, partner[k]);
+            other.room = r_min(other.room, wall_plane(near, k).room);
 #else
-            struct fillet_plane other = fillet_plane(p3(0, 0, 1), WALL_FAR);
+            struct fillet_plane other = fillet_plane(p3(0, 0, 1), WALL_FAR, 0);
 #endif
             s = limit_add_wall(s, a, WALL_PRIMITIVE(primitive, p), other, pose + w * POSE_WIDTH,
                 material_load(table + MATERIAL_WIDTH * (a.kind * n_material + wall_material[w])),

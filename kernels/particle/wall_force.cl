@@ -41,8 +41,8 @@
 #define P_X 0
 #define P_RADIUS 3
 #define P_PRIMITIVE 4
-#define P_PARTNER 16 /* n, distance */
-#define P_ROWS (WITH_JOINED ? 20 : 16)
+#define P_PARTNER 16 /* n, distance, the smaller room of both */
+#define P_ROWS (WITH_JOINED ? 21 : 16)
 #define LOC(row) loc[(row)*BATCH + l]
 #define PLACE(row) place[(row)*BATCH + l]
 
@@ -66,16 +66,19 @@
 #if WITH_JOINED
 #define SHARE LOC(L_SHARE)
 #define VALLEY(g, v, radius)                                                                       \
-    wall_geometry_valley(                                                                          \
-        g, fillet_plane(ROW3_LOAD(p3, place, P_PARTNER, l), PLACE(P_PARTNER + 3)), v, radius, dt)
+    wall_geometry_valley(g,                                                                        \
+        fillet_plane(                                                                              \
+            ROW3_LOAD(p3, place, P_PARTNER, l), PLACE(P_PARTNER + 3), PLACE(P_PARTNER + 4)),       \
+        v, radius, dt)
 
 /* What wall_keep.cl found. */
-LAW void wall_load_near(__global const preal *near, int partner, real keep, __local preal *place,
-    __local real *loc, size_t l)
+LAW void wall_load_near(__global const preal *near, int own, int partner, real keep,
+    __local preal *place, __local real *loc, size_t l)
 {
     struct fillet_plane other = wall_partner(near, partner);
     ROW3_STORE(place, P_PARTNER, l, other.n.x, other.n.y, other.n.z);
     PLACE(P_PARTNER + 3) = other.distance;
+    PLACE(P_PARTNER + 4) = r_min(other.room, wall_plane(near, own).room);
     LOC(L_SHARE) = keep;
 }
 #else
@@ -179,7 +182,7 @@ __kernel __attribute__((reqd_work_group_size(BATCH_LANES, 1, 1))) void wall_forc
         wall[l] = wall_of[k];
 #endif
 #if WITH_JOINED
-        wall_load_near(near, partner[base + l], keep[base + l], place, loc, l);
+        wall_load_near(near, (int)(base + l), partner[base + l], keep[base + l], place, loc, l);
 #endif
 #if WITH_TABLE
         real kind = WITH_MATERIALS ? motion[(size_t)e * MOTION_STRIDE + SPIN_AT + 3] : (real)0;

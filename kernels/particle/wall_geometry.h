@@ -70,17 +70,18 @@ LAW struct wall_geometry wall_geometry(struct wall_primitive w, pvec3 x, vec3 v,
 /* The contact with the plane `other` of the same wall on the other side of a valley, at the end of
  * the step; v: velocity of the centre at the half step. A plane's distance is linear in the way, so
  * that of the middle of the step is known; the wall's turn within half a step is left out of
- * other.n, which changes the valley by that times its angle. */
+ * other.n, which changes the valley by that times its angle. other.room: the smaller of both. */
 LAW struct wall_geometry wall_geometry_valley(
     struct wall_geometry g, struct fillet_plane other, vec3 v, real radius, real dt)
 {
     preal way = p3_dot(other.n, p3_of_v3(v3_sub(v, g.v)));
     struct fillet_plane then =
-        fillet_plane(other.n, p_fma((preal)0.5 * (preal)dt, way, other.distance));
-    struct fillet_plane end = fillet_of(
-                            fillet_plane(p3_of_v3(g.n), g.distance), other, (preal)radius),
-                        middle = fillet_of(
-                            fillet_plane(p3_of_v3(g.n_half), g.distance_half), then, (preal)radius);
+        fillet_plane(other.n, p_fma((preal)0.5 * (preal)dt, way, other.distance), other.room);
+    struct fillet_plane end = fillet_of(fillet_plane(p3_of_v3(g.n), g.distance, other.room), other,
+                            (preal)radius),
+                        middle =
+                            fillet_of(fillet_plane(p3_of_v3(g.n_half), g.distance_half, other.room),
+                                then, (preal)radius);
     g.n = v3_of_p3(end.n);
     g.distance = end.distance;
     g.n_half = v3_of_p3(middle.n);

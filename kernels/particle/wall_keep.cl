@@ -3,10 +3,10 @@
  * the next (law_wall.h, law_fillet.h). One work-item per element, because the candidates of one
  * element decide about each other.
  *
- * near [n_candidate][4]: unit vector to the closest point, and the distance [m]; partner
- * [n_candidate]: the candidate with which it forms a valley, -1 without one; keep [n_candidate]:
- * share with which a contact acts, 0 where a deeper one acts for it, -1 where it is no local
- * minimum of the distance.
+ * near [n_candidate][NEAR_WIDTH]: unit vector to the closest point, the distance, the room of the
+ * facet, and the distance in the valley [m]; partner [n_candidate]: the candidate with which it
+ * forms a valley, -1 without one; keep [n_candidate]: share with which a contact acts, 0 where a
+ * deeper one acts for it, -1 where it is no local minimum of the distance.
  *
  * lint: WITH_TRIANGLE requires WITH_WALLS
  * lint: WITH_JOINED requires WITH_WALLS */
@@ -35,6 +35,21 @@ LAW struct wall_closest wall_seen(struct wall_sight w, int k, pvec3 x)
     int p = w.candidate[k];
     return wall_closest_moved(
         WALL_PRIMITIVE(w.primitive, p), pose_frame(w.pose + w.wall_of[p] * POSE_WIDTH), x);
+}
+
+/* The closest point, kept for the kernels after this one. */
+LAW struct wall_closest wall_look(struct wall_sight w, int k)
+{
+    struct wall_closest c = wall_seen(w, k, w.x);
+    int p = w.candidate[k];
+    pvec3 q = wall_to_reference(pose_frame(w.pose + w.wall_of[p] * POSE_WIDTH), w.x);
+    __global preal *row = w.near + (size_t)NEAR_WIDTH * k;
+    row[0] = c.n.x;
+    row[1] = c.n.y;
+    row[2] = c.n.z;
+    row[3] = c.distance;
+    row[4] = wall_room(WALL_PRIMITIVE(w.primitive, p), q);
+    return c;
 }
 
 LAW struct wall_features wall_features_of(struct wall_sight w, int k)
@@ -77,28 +92,45 @@ LAW int wall_is_minimum(struct wall_sight w, int t)
     return 1;
 }
 
-/* Share and partner of a local minimum. */
+LAW int wall_may_join(struct wall_sight w, int t)
+{
+    return wall_kind(w, t) == WALL_TRIANGLE && w.keep[t] >= 0 &&
+           wall_plane(w.near, t).distance < w.radius * IN_SIGHT;
+}
+
+/* Partner of a local minimum: who forms the deepest valley with it. */
 LAW void wall_join(struct wall_sight w, int t)
 {
     struct fillet_plane own = wall_plane(w.near, t);
-    preal share = 1, best = own.distance;
-    int other = -1;
-    w.partner[t] = -1;
-    if (wall_kind(w, t) != WALL_TRIANGLE || !(w.keep[t] >= 0) ||
-        !(own.distance < w.radius * IN_SIGHT))
-        return;
-    for (int s = w.first; s < w.end; s++) {
+    preal best = own.distance;
+    int other = -1, joins = wall_may_join(w, t);
+    for (int s = w.first; s < w.end && joins; s++) {
         if (s == t || w.keep[s] < 0 || !wall_is_same(w, s, t)) continue;
-        struct fillet_plane d = wall_plane(w.near, s), valley = fillet_of(own, d, w.radius);
-        int is_deeper = d.distance < own.distance || (!(own.distance < d.distance) && s < t);
-        if (is_deeper) share *= (preal)1 - fillet_hides(p3_dot(own.n, d.n));
+        struct fillet_plane valley = fillet_of(own, wall_plane(w.near, s), w.radius);
         if (valley.distance < best) {
             best = valley.distance;
             other = s;
         }
     }
+    w.partner[t] = other;
+    w.near[(size_t)NEAR_WIDTH * t + NEAR_VALLEY] = best;
+}
+
+/* Its share, when all valleys are known. */
+LAW void wall_share(struct wall_sight w, int t)
+{
+    pvec3 n = wall_plane(w.near, t).n;
+    preal share = 1;
+    if (!wall_may_join(w, t)) return;
+    for (int s = w.first; s < w.end; s++) {
+        if (s == t || w.keep[s] < 0 || !wall_is_same(w, s, t)) continue;
+        struct fillet_plane d = wall_plane(w.near, s);
+        if (fillet_is_first(wall_valley(w.near, s), d.distance, s, wall_valley(w.near, t),
+                wall_plane(w.near, t).distance, t))
+            share *= (preal)1 - fillet_hides(p3_dot(n, d.n));
+    }
     w.keep[t] = (real)share;
-    w.partner[t] = share < (preal)1 ? -1 : other;
+    if (share < (preal)1) w.partner[t] = -1;
 }
 
 #if WITH_HISTORY
@@ -139,13 +171,10 @@ __kernel __attribute__((reqd_work_group_size(64, 1, 1))) void wall_keep(int n_ow
     preal4 p = LOAD_POSITION(e);
     struct wall_sight w = {candidate, features, wall_of, primitive, pose, near, partner, keep,
         XYZ(p), p.s3, begin[e], begin[e + 1]};
-    for (int t = w.first; t < w.end; t++) {
-        struct wall_closest c = wall_seen(w, t, w.x);
-        vstore4((preal4)(c.n.x, c.n.y, c.n.z, c.distance), t, near);
-        partner[t] = c.feature;
-    }
+    for (int t = w.first; t < w.end; t++) partner[t] = wall_look(w, t).feature;
     for (int t = w.first; t < w.end; t++) keep[t] = wall_is_minimum(w, t) ? (real)1 : (real)-1;
     for (int t = w.first; t < w.end; t++) wall_join(w, t);
+    for (int t = w.first; t < w.end; t++) wall_share(w, t);
 #if WITH_HISTORY
     for (int t = w.first; t < w.end; t++) {
         int giver = state[t] == 0 ? wall_giver(w, state, t) : -1;

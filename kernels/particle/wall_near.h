@@ -5,12 +5,18 @@
 
 #include "contact/law_fillet.h"
 #include "contact/law_wall.h"
+#include "particle_words.h"
 
 #ifdef __OPENCL_VERSION__
 LAW struct fillet_plane wall_plane(__global const preal *near, int k)
 {
-    preal4 row = vload4(k, near);
-    return fillet_plane(p3(row.s0, row.s1, row.s2), row.s3);
+    __global const preal *row = near + (size_t)NEAR_WIDTH * k;
+    return fillet_plane(p3(row[0], row[1], row[2]), row[3], row[4]);
+}
+
+LAW preal wall_valley(__global const preal *near, int k)
+{
+    return near[(size_t)NEAR_WIDTH * k + NEAR_VALLEY];
 }
 
 /* While `feature` holds the features. */
@@ -28,7 +34,7 @@ LAW struct wall_closest wall_near(__global const preal *near, __global const int
 /* The other side of the valley; out of reach where there is none. */
 LAW struct fillet_plane wall_partner(__global const preal *near, int partner)
 {
-    if (partner < 0) return fillet_plane(p3(0, 0, 1), WALL_FAR);
+    if (partner < 0) return fillet_plane(p3(0, 0, 1), WALL_FAR, 0);
     return wall_plane(near, partner);
 }
 

@@ -214,7 +214,7 @@ static void reserve_contacts(struct wall_contacts *w)
     if (w->features->joined) {
         buffer_reserve(&w->keep, capacity * real);
         buffer_reserve(&w->partner, capacity * sizeof(cl_int));
-        buffer_reserve(&w->near, capacity * 4 * particles_preal(w->features));
+        buffer_reserve(&w->near, capacity * NEAR_WIDTH * particles_preal(w->features));
     }
     buffer_reserve(&w->result, capacity * WALL_RESULT_WIDTH(true) * real);
     if (w->layout.remembers) {

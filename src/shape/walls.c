@@ -216,6 +216,7 @@ struct walls *walls_create(const struct scene *scene, struct scene_errors *error
         bound_wall(walls, w);
     }
     share_features(walls);
+    for (int w = 0; w < n; w++) walls_room(walls, w);
     if (errors->n == n_error) return walls;
     walls_free(walls);
     return NULL;

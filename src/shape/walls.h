@@ -51,6 +51,10 @@ void walls_axes(const double normal[3], double u[3], double v[3]);
  * (walls that move: may touch), within some 1e-5 of their coordinates. */
 bool walls_flush(const struct walls *walls);
 
+/* Writes the rooms of law_wall.h into the rows of a mesh, from valleys of less than 30 degrees;
+ * walls_create calls it. */
+void walls_room(struct walls *walls, int w);
+
 /* Rigid place and motion of one wall at one step n: a point q of the wall's frame is at p = R q +
  * t. velocity V, spin W and centre c belong to the half step before n: V + W x (p_h - c) = (p^n -
  * p^(n-1))/dt, p_h = (p^n + p^(n-1))/2, so work closes. */

@@ -28,7 +28,7 @@ struct test {
     int wall_of[N_PRIMITIVE], wall_material[N_WALL], candidate[N_CANDIDATE],
         of_element[N_CANDIDATE], partner[N_CANDIDATE], state[CAPACITY];
     real keep[N_CANDIDATE];
-    preal near[N_CANDIDATE][4];
+    preal near[N_CANDIDATE][NEAR_WIDTH];
     real history[(HISTORY_WIDTH + 1) * CAPACITY];
     double ledger[LEDGER_WIDTH * CAPACITY]; /* of the host */
 };
@@ -119,6 +119,8 @@ static void set_partner(struct test *t, int k)
     t->partner[k] = k % 2 ? k : -1;
     for (int a = 0; a < 3; a++) t->near[k][a] = (preal)(n[a] / sqrt(square));
     t->near[k][3] = c.distance + (preal)(1e-6 * force_any());
+    /* no ball that fits, a tight hollow, or a wide one */
+    t->near[k][4] = (preal)(radius * (0.9 + 0.1 * (double)(k / 2 % 4)));
 }
 
 static void set_candidate(struct test *t, int k)
@@ -204,7 +206,7 @@ static struct host_contact law_of(const struct test *t, int c)
     if (WITH_TRIANGLE && t->partner[c] >= 0) {
         const preal *near = t->near[t->partner[c]];
         g = wall_geometry_valley(
-            g, fillet_plane(p3(near[0], near[1], near[2]), near[3]), v, own, (real)STEP);
+            g, fillet_plane(p3(near[0], near[1], near[2]), near[3], near[4]), v, own, (real)STEP);
     }
     bool counts = !WITH_TRIANGLE || t->keep[c] > 0;
     if (!counts) {

@@ -81,39 +81,50 @@ static bool is_minimum(const struct sight *sight, const int *candidate, int n,
     return true;
 }
 
-static struct fillet_plane plane_of(struct wall_closest c)
+static struct fillet_plane plane_of(
+    const struct sight *sight, const struct reference_contact *contact)
 {
-    return fillet_plane(c.n, c.distance);
+    struct wall_frame frame = frame_of(sight->pose + sight->walls->wall_of[contact->primitive]);
+    return fillet_plane(contact->closest.n, contact->closest.distance,
+        wall_room(
+            primitive_of(sight->walls, contact->primitive), wall_to_reference(frame, sight->x)));
 }
 
-/* Share and valley of one of n minima. */
+static bool may_join(
+    const struct sight *sight, const struct reference_contact *contact, int s, int t)
+{
+    const struct walls *walls = sight->walls;
+    return s != t && is_triangle(walls, contact[t].primitive) &&
+           walls->wall_of[contact[s].primitive] == walls->wall_of[contact[t].primitive] &&
+           contact[t].closest.distance < (preal)1.5 * sight->radius;
+}
+
+/* The deepest valley of one of n minima. */
 static void join(const struct sight *sight, struct reference_contact *contact, int n, int t)
 {
     struct reference_contact *own = &contact[t];
-    const struct walls *walls = sight->walls;
     own->partner = -1;
-    own->share = 1;
-    own->valley = plane_of(own->closest);
-    if (!is_triangle(walls, own->primitive)) return;
-    if (!(own->closest.distance < (preal)1.5 * sight->radius)) return;
+    own->valley = plane_of(sight, own);
     for (int s = 0; s < n; s++) {
-        struct wall_closest other = contact[s].closest;
-        if (s == t || walls->wall_of[contact[s].primitive] != walls->wall_of[own->primitive])
-            continue;
+        if (!may_join(sight, contact, s, t)) continue;
         struct fillet_plane valley =
-            fillet_of(plane_of(own->closest), plane_of(other), sight->radius);
-        if (other.distance < own->closest.distance ||
-            (!(own->closest.distance < other.distance) && s < t))
-            own->share *= (preal)1 - fillet_hides(p3_dot(own->closest.n, other.n));
-        if (valley.distance < own->valley.distance) {
-            own->valley = valley;
-            own->partner = s;
-        }
+            fillet_of(plane_of(sight, own), plane_of(sight, &contact[s]), sight->radius);
+        if (!(valley.distance < own->valley.distance)) continue;
+        own->valley = valley;
+        own->partner = s;
     }
-    if (own->share < (preal)1) {
-        own->partner = -1;
-        own->valley = plane_of(own->closest);
-    }
+}
+
+/* Its share, when all valleys are known. */
+static void share(const struct sight *sight, struct reference_contact *contact, int n, int t)
+{
+    struct reference_contact *own = &contact[t];
+    own->share = 1;
+    for (int s = 0; s < n; s++)
+        if (may_join(sight, contact, s, t) &&
+            fillet_is_first(contact[s].valley.distance, contact[s].closest.distance, s,
+                own->valley.distance, own->closest.distance, t))
+            own->share *= (preal)1 - fillet_hides(p3_dot(own->closest.n, contact[s].closest.n));
 }
 
 int reference_contacts(const struct walls *walls, const struct wall_pose *pose, const double x[3],
@@ -131,6 +142,12 @@ int reference_contacts(const struct walls *walls, const struct wall_pose *pose, 
         out[n++].closest = all[t];
     }
     for (int t = 0; t < n; t++) join(&sight, out, n, t);
+    for (int t = 0; t < n; t++) share(&sight, out, n, t);
+    for (int t = 0; t < n; t++) {
+        if (!(out[t].share < (preal)1)) continue;
+        out[t].partner = -1;
+        out[t].valley = plane_of(&sight, &out[t]);
+    }
     free(all);
     return n;
 }
