@@ -41,15 +41,34 @@ static _Noreturn void build_failed(const struct program *program, const char *so
         program->options, dump(program, source));
 }
 
-static void build(struct program *program, const char *source)
+static cl_int try_build(struct program *program, const char *source, const char *options)
 {
     cl_int code;
     program->id = clCreateProgramWithSource(program->dev->context, 1, &source, NULL, &code);
     check_cl_as(code, "clCreateProgramWithSource");
+    return clBuildProgram(program->id, 1, &program->dev->id, options, NULL, NULL);
+}
+
+/* pocl's header of all functions is guarded by _OPENCL_H_; with the guard up, and our declarations
+ * (kernels/common/builtins.h) in its place, it is not read. Kernels from a folder may call others,
+ * and another version of pocl may need its header: then in the ordinary way. */
+static cl_int build_without_header(struct program *program, const char *source)
+{
+    char *options = fail_format("%s -DDECLARE_BUILTINS -D_OPENCL_H_", program->options);
+    cl_int code = try_build(program, source, options);
+    if (code != CL_SUCCESS) check_cl(clReleaseProgram(program->id));
+    free(options);
+    return code;
+}
+
+static void build(struct program *program, const char *source)
+{
     signals_hold();
     int lock = kernel_cache_lock(program->dev, program->cache_key);
-    code = clBuildProgram(program->id, 1, &program->dev->id, program->options, NULL, NULL);
-    if (code != CL_SUCCESS) build_failed(program, source, code);
+    if (!program->dev->is_pocl || build_without_header(program, source) != CL_SUCCESS) {
+        cl_int code = try_build(program, source, program->options);
+        if (code != CL_SUCCESS) build_failed(program, source, code);
+    }
     kernel_cache_unlock(lock);
     signals_pass();
 }

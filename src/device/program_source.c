@@ -19,12 +19,18 @@ struct join {
     char *done[MAX_FILES]; /* headers that are in */
 };
 
+static const struct kernel_source *embedded(const char *name)
+{
+    const struct kernel_source *known = kernel_source_table;
+    while (known->name && strcmp(known->name, name) != 0) known++;
+    return known;
+}
+
 /* Text of a kernel file, freed by the caller. */
 static char *kernel_text(const char *name)
 {
     const char *folder = getenv("DEMOCLES_KERNELS");
-    const struct kernel_source *known = kernel_source_table;
-    while (known->name && strcmp(known->name, name) != 0) known++;
+    const struct kernel_source *known = embedded(name);
     if (!folder || !folder[0]) {
         if (!known->name) fail_stop(EXIT_DEVICE, "kernel file %s is not in this executable", name);
         return fail_strdup(known->text);
@@ -106,6 +112,8 @@ char *program_source(const char *const *sources)
     size_t bytes = 0;
     struct join join = {.out = open_memstream(&text, &bytes)};
     if (!join.out) fail_stop(EXIT_IO, "out of memory");
+    /* what the program needs whatever the kernels are: from the executable, not from a folder */
+    fprintf(join.out, "#line 1 \"builtins.h\"\n%s", embedded("builtins.h")->text);
     for (; *sources; sources++) append(&join, *sources);
     fclose(join.out);
     for (int i = 0; i < join.n_done; i++) free(join.done[i]);
