@@ -93,11 +93,11 @@ int main(int argc, char **argv)
     dev = device_open(comm, NULL, true, false);
     bool some = argc > 1 && strcmp(argv[1], "some") == 0;
     if (!some) check(size, bodies_block, 1, 1, (struct lattice_options){0});
-    check(thin, bodies_block, 1, 1, (struct lattice_options){.turn = true});
+    if (!some) check(thin, bodies_block, 1, 1, (struct lattice_options){.turn = true});
     check(tiny, bodies_block, 1, 1, (struct lattice_options){0});
     const struct link_strength strength[4] = {{4e5, 8e5, 2, 0, 0, 0}, {6e5, 6e5, 0, 0, 0, 0},
         {8e5, 4e5, 1, 0, 0, 0}, {10e5, 2e5, 2, 0, 0, 0}};
-    for (int k = some; k < (some ? 2 : 5); k++)
+    for (int k = 0; k < (some ? 0 : 5); k++)
         check(
             size, bodies_mixed, 2, 2, (struct lattice_options){.turn = true, .scheme = scheme[k]});
     for (int k = 0; k < (some ? 1 : 5); k++)

@@ -265,16 +265,20 @@ class Partition(parallel_runs.Case):
         self.assertLess(ranks[1]["work"], ranks[0]["work"])
 
     def test_lattice(self):
+        self.deal_cells(("interactions", 3, "interactions"), ("graph", 3, "measured"))
+
+    def test_lattice_all(self):
+        self.deal_cells(
+            ("geometric", 2, "measured"),
+            ("graph", 4, "interactions"),
+        )
+
+    def deal_cells(self, *runs):
         scene = os.path.join(self.dir, "lattice.yaml")
         with open(scene, "w") as file:
             yaml.safe_dump(lattice_runs.block("leapfrog"), file)
         alone = self.good_run(scene, 1, "--steps", "60").record()["digest"]
-        for method, ranks, weights in (
-            ("geometric", 2, "measured"),
-            ("interactions", 3, "interactions"),
-            ("graph", 4, "interactions"),
-            ("graph", 3, "measured"),
-        ):
+        for method, ranks, weights in runs:
             with self.subTest(method=method, ranks=ranks, weights=weights):
                 record = self.good_run(
                     scene, ranks, "--steps", "60", *keys(method=method, weights=weights)

@@ -31,12 +31,20 @@ class Failures(robust_jobs.Case):
 
 
 class Numerics(Failures):
+    """Most with the same features, whose kernels are compiled once: one law, walls if only far
+    away, the account of energy if only of the start."""
+
+    FAR = [scene_parts.box("far", (-5, -5, -5), (5, 5, 5))]
+    AT_THE_START = [{"name": "energy", "every": 1e3, "energy": "all"}]
+
     def test_step_over_limit(self):
         """Two spheres that touch may take 2/sqrt(2k/m) = 5.7e-4 s, with a damping ratio of 0.1
         4.7e-4 s, a bed that has come to rest less: the first is refused at once, the other
         then."""
         contact = {"normal": {**scene_parts.LINEAR, "damping_ratio": 0}}
-        pair = scene_parts.scene(1000, 6e-4, contact, [{"name": "pair", "file": "pair.csv"}])
+        pair = scene_parts.scene(
+            1000, 6e-4, contact, [{"name": "pair", "file": "pair.csv"}], self.FAR
+        )
         with open(os.path.join(self.dir, "pair.csv"), "w") as file:
             file.write("x,y,z,radius\n0,0,0,0.0025\n0.004999,0,0,0.0025\n")
         fall = scene_parts.scene(
@@ -46,7 +54,7 @@ class Numerics(Failures):
             [scene_parts.block("balls", (0, 0, 0), (0.02, 0.02, 0.03), 0.005)],
             [scene_parts.box("room", (0, 0, 0), (0.02, 0.02, 0.1))],
         )
-        fall["measure"] = []  # the budget of energy would find it first
+        fall["measure"] = self.AT_THE_START  # the budget of energy would find it first
         for scene, ranks, when in ((pair, 1, r"0, t = 0 s"), (fall, 3, r"[1-9]\d*, t = \S+ s")):
             run = self.fails(
                 self.put(scene),
@@ -81,6 +89,59 @@ class Numerics(Failures):
         )
         self.failed_record(run, 5)
 
+    def test_nan_in_the_last_step(self):
+        """Too few steps for the flags of the drift to be read:
+        1e-41 kg are no mass in single precision."""
+        dust = scene_parts.scene(
+            3,
+            1e-5,
+            {"normal": scene_parts.LINEAR},
+            [{"name": "dust", "file": "dust.csv", "velocity": [0, 0, 1]}],
+        )
+        dust["measure"], dust["precision"] = [], "single"
+        with open(os.path.join(self.dir, "dust.csv"), "w") as file:
+            file.write("x,y,z,radius\n0,0,0,1e-18\n0,0,0.1,0.001\n")
+        run = self.fails(self.put(dust), 3, 5, "step 0, t = 0 s: the last state holds NaN")
+        self.failed_record(run, 5)
+        self.assertEqual(run.frames(), [])
+
+    def test_state_without_numbers_is_no_frame(self):
+        """Far over its limit, a frame in each step: those before stay, and `resume` takes one."""
+        contact = {"normal": {**scene_parts.LINEAR, "damping_ratio": 0}}
+        room = [scene_parts.box("room", (0, 0, 0), (0.03, 0.03, 0.03))]
+        block = scene_parts.block("b", (0, 0, 0), (0.03, 0.03, 0.03), 0.005, velocity=(1, 1, 1))
+        scene = scene_parts.scene(2000, 1, contact, [block], room)
+        scene["time"]["allow_unstable"], scene["measure"] = True, self.AT_THE_START
+        scene["output"] = {"every": 1}
+        run = self.run_scene(self.put(scene), 1)
+        self.assertEqual(run.code, 5, run.err)
+        self.failed_record(run, 5)
+        self.assertGreater(self.whole(run.dir), 1)
+        for path in run.frames():
+            self.assertTrue(numpy.isfinite(parallel_runs.frames.Frame(path).points).all(), path)
+        log = pathlib.Path(run.dir, "log.txt").read_text()
+        self.assertRegex(log, r"error: step \d+, .* not numbers")
+        again = subprocess.run(
+            [parallel_runs.DEMOCLES, "resume", run.dir], capture_output=True, text=True
+        )
+        self.assertEqual(again.returncode, 5)
+        self.assertIn(f"resumes from step {len(run.frames()) - 1},", again.stdout)
+
+    def test_lost_element(self):
+        free = scene_parts.scene(
+            10**4,
+            1e-4,
+            {"normal": scene_parts.LINEAR},
+            [scene_parts.block("free", (0, 0, 0), (0.02, 0.02, 0.02), 0.005, velocity=(1, 0, 0))],
+            self.FAR,
+            domain={"box": {"min": [-0.1, -0.1, -1], "max": [0.1, 0.1, 1]}},
+        )
+        run = self.fails(self.put(free), 3, 5, r"step \d+, t = .*: .*element \d+ .*domain")
+        self.failed_record(run, 5)
+        self.whole(run.dir)
+
+
+class Unstable(Failures):
     def test_blow_up(self):
         """Some times the stable step: the run finds out by itself,
         and the frames until then stay."""
@@ -111,56 +172,6 @@ class Numerics(Failures):
                     self.failed_record(run, 5)
                 self.assertEqual(self.leftovers(run.dir), [])
                 self.assertGreater(self.whole(run.dir), 0)
-
-    def test_nan_in_the_last_step(self):
-        """Too few steps for the flags of the drift to be read:
-        1e-41 kg are no mass in single precision."""
-        dust = scene_parts.scene(
-            3,
-            1e-5,
-            {"normal": scene_parts.LINEAR},
-            [{"name": "dust", "file": "dust.csv", "velocity": [0, 0, 1]}],
-        )
-        dust["measure"], dust["precision"] = [], "single"
-        with open(os.path.join(self.dir, "dust.csv"), "w") as file:
-            file.write("x,y,z,radius\n0,0,0,1e-18\n0,0,0.1,0.001\n")
-        run = self.fails(self.put(dust), 3, 5, "step 0, t = 0 s: the last state holds NaN")
-        self.failed_record(run, 5)
-        self.assertEqual(run.frames(), [])
-
-    def test_state_without_numbers_is_no_frame(self):
-        """Far over its limit, a frame in each step: those before stay, and `resume` takes one."""
-        contact = {"normal": {**scene_parts.LINEAR, "damping_ratio": 0}}
-        room = [scene_parts.box("room", (0, 0, 0), (0.03, 0.03, 0.03))]
-        block = scene_parts.block("b", (0, 0, 0), (0.03, 0.03, 0.03), 0.005, velocity=(1, 1, 1))
-        scene = scene_parts.scene(2000, 1, contact, [block], room)
-        scene["time"]["allow_unstable"], scene["measure"] = True, []
-        scene["output"] = {"every": 1}
-        run = self.run_scene(self.put(scene), 1)
-        self.assertEqual(run.code, 5, run.err)
-        self.failed_record(run, 5)
-        self.assertGreater(self.whole(run.dir), 1)
-        for path in run.frames():
-            self.assertTrue(numpy.isfinite(parallel_runs.frames.Frame(path).points).all(), path)
-        log = pathlib.Path(run.dir, "log.txt").read_text()
-        self.assertRegex(log, r"error: step \d+, .* not numbers")
-        again = subprocess.run(
-            [parallel_runs.DEMOCLES, "resume", run.dir], capture_output=True, text=True
-        )
-        self.assertEqual(again.returncode, 5)
-        self.assertIn(f"resumes from step {len(run.frames()) - 1},", again.stdout)
-
-    def test_lost_element(self):
-        free = scene_parts.scene(
-            10**4,
-            1e-4,
-            {},
-            [scene_parts.block("free", (0, 0, 0), (0.02, 0.02, 0.02), 0.005, velocity=(1, 0, 0))],
-            domain={"box": {"min": [-0.1, -0.1, -1], "max": [0.1, 0.1, 1]}},
-        )
-        run = self.fails(self.put(free), 3, 5, r"step \d+, t = .*: .*element \d+ .*domain")
-        self.failed_record(run, 5)
-        self.whole(run.dir)
 
 
 class Environment(Failures):
