@@ -12,6 +12,7 @@
 #include "run/energy_watch.h"
 #include "run/record.h"
 #include "run/trust.h"
+#include "slipping.h"
 
 /* Digest of the state as it lies on the device, in its own bits. Returns false if there are
  * NaNs. */
@@ -89,6 +90,7 @@ static void report_trust(struct sim *s, struct report *r, const struct energy_su
             ENERGY_WATCH_SPARE(now->gravity));
     trust.contact_steps = limit_shortest_contact(s->scene, run->first, speed) / s->dt;
     trust.overlap = overlap_largest(s);
+    trust.slipping = slipping_share(s);
     trust.list_room = overlap_room_used(s);
     trust_report(s, r, trust);
 }

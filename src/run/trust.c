@@ -24,13 +24,14 @@ static const struct row rows[] = {
         " steps", SMALLER_STEP ", or softer contacts"},
     {"overlap", offsetof(struct trust, overlap), 0, 0.2, "largest overlap ", " of the radius",
         "stiffer contacts"},
+    {"slipping", offsetof(struct trust, slipping), 0, HUGE_VAL, "slipping ", " of the pairs", ""},
     {"list_room", offsetof(struct trust, list_room), 0, 1, "neighbour lists used ",
         " of their room", SMALLER_STEP},
 };
 enum { N_ROW = sizeof rows / sizeof *rows };
 
 const struct trust trust_unknown = {
-    (double)NAN, (double)NAN, (double)NAN, (double)NAN, (double)NAN};
+    (double)NAN, (double)NAN, (double)NAN, (double)NAN, (double)NAN, (double)NAN};
 
 static double value_of(const struct trust *trust, const struct row *row)
 {

@@ -13,6 +13,7 @@ struct trust {
     double step;          /* [1] time step over the smallest critical one; by trust_report */
     double contact_steps; /* [1] time steps in the shortest contact that the scene allows */
     double overlap;       /* [1] largest overlap over the smaller radius */
+    double slipping;      /* [1] share of the pairs with friction that slip, at the end */
     double list_room;     /* [1] largest displacement over the room that the lists gave */
 };
 

@@ -123,6 +123,25 @@ class Overlaps(cli.Case):
         said = [line for line in run.err if "errors may be above 1 %" in line]
         self.assertRegex(said[0], "shortest contact 14.2 steps, below 20: a smaller time.step")
 
+    def test_slipping(self):
+        """Three pairs that are pressed together: one slides, at ten times what mu F_n lets its
+        spring hold; one moves, but sticks; one is at rest."""
+        friction = "tangential: {stiffness_ratio: 0.8, friction: 0.1, damping_ratio: 0.1}, "
+        scene = HEAVY.replace("END", "0.1 ms").replace("SURFACE", PLANE).replace("STIFF", "1e3")
+        scene = scene.replace("{between: [ball, ball], ", "{between: [ball, ball], " + friction)
+        balls = [(0, 0), (0.0099, 1), (0.2, 0), (0.2099, 0.02), (0.4, 0), (0.4099, 0)]
+        self.put(
+            "pairs.csv", "x,y,z,radius,vy\n" + "".join(f"{x},0,1,5e-3,{v}\n" for x, v in balls)
+        )
+        found = []
+        for ranks in (1, 3):
+            _, record = self.go(
+                f"d{ranks}", scene.replace("ball.csv", "pairs.csv"), [], ranks=ranks
+            )
+            self.assertAlmostEqual(record["trust"]["slipping"], 1 / 3, places=12)
+            found.append(record["trust"])
+        self.assertEqual(found[0], found[1])
+
     def test_pairs_on_any_ranks(self):
         """Two balls that pass each other; 3 m/s (m*/k)^(1/2) = 24 mm are more than 10 mm."""
         scene = HEAVY.replace("END", "10 ms").replace("SURFACE", RECTANGLE).replace("STIFF", "10")
