@@ -6,6 +6,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
+from matplotlib import ticker  # noqa: E402
 import numpy  # noqa: E402
 
 from democles import accuracy_report as report  # noqa: E402
@@ -39,7 +40,8 @@ def draw_panel(axis, result, measure, target):
                 axis.annotate(
                     run.setting[plan.graded],
                     (run.seconds, error),
-                    xytext=(5, 4),
+                    xytext=(5, 4 if n % 2 == 0 else -11),
+                    color=f"C{n % 10}",
                     textcoords="offset points",
                     size=8,
                 )
@@ -54,6 +56,9 @@ def draw_panel(axis, result, measure, target):
         axis.text(at + 0.015, 0.97, str(n + 1), transform=axis.transAxes, size=8, va="center")
     axis.set_xscale("log")
     axis.set_yscale("log")
+    axis.xaxis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
+    axis.xaxis.set_major_formatter(ticker.FormatStrFormatter("%g"))
+    axis.xaxis.set_minor_formatter(ticker.NullFormatter())
     axis.margins(x=0.15, y=0.2)
     axis.set_title(measure or "worst of all measures", size=11)
     axis.grid(color="0.9", which="both")
@@ -70,7 +75,7 @@ def failures(plan):
 def draw_errors(path, name, options, result):
     measures = report.shown_columns(result)
     panels = [None, *(measures if len(measures) > 1 else [])][:MOST_PANELS]
-    columns = min(len(panels), 3)
+    columns = 2 if len(panels) in (2, 4) else min(len(panels), 3)
     rows = -(-len(panels) // columns)
     lines = failures(result.plan)
     figure, axes = plt.subplots(
