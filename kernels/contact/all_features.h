@@ -18,7 +18,7 @@
     X(rolling_epsd, ROLLING_EPSD, c.k_r > 0)                                                       \
     X(binding, BINDING, c.f_b > 0)                                                                 \
     X(jkr, JKR, c.jkr > 0)                                                                         \
-    X(whole_slip, WHOLE_SLIP, c.mu > 0 && (c.law & CONTACT_WHOLE_SLIP))                            \
+    X(whole_slip, WHOLE_SLIP, c.mu > 0 && (c.law & CONTACT_OTHER_SLIP))                            \
     X(radius_lever, RADIUS_LEVER, c.mu > 0 && (c.law & CONTACT_RADIUS_LEVER))                      \
     X(no_rescale, NO_RESCALE, c.mu > 0 && (c.law & CONTACT_NO_RESCALE))                            \
     X(cap_magnitude, CAP_MAGNITUDE, c.mu > 0 && (c.law & CONTACT_CAP_MAGNITUDE))

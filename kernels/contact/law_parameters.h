@@ -25,6 +25,9 @@
 #define CONTACT_RADIUS_LEVER 8   /* lever arms are the radii, whatever the overlap */
 #define CONTACT_NO_RESCALE 16    /* F_t = k_t(delta) xi, so that a cycle of loading gives energy */
 #define CONTACT_CAP_MAGNITUDE 32 /* friction is limited by mu |F_n| */
+#define CONTACT_UNDAMPED_SLIP 64 /* the spring slips by itself, its dashpot rests meanwhile */
+/* Any slip rule but the default; the feature WHOLE_SLIP has them all. */
+#define CONTACT_OTHER_SLIP (CONTACT_WHOLE_SLIP | CONTACT_UNDAMPED_SLIP)
 
 /* Two materials, any sizes. S = 1 (linear) or R*^(1/2) (Hertz). One row (type, name) each; from it
  * follow the struct, the tables that the host makes and the kernels read. */

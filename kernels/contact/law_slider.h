@@ -19,6 +19,10 @@
  * what the dashpot leaves of it, x = -(F + gamma v)/k. So the spring may hold more than the cap,
  * against the slip; its energy is in the account as it is.
  *
+ * Undamped slip, by choice (LIGGGHTS, Yade): slip is tested on the spring, which is cut as by
+ * default. Where it slips the dashpot has no part; where it sticks the sum has no limit. The force
+ * jumps by the dashpot's where slip begins and ends.
+ *
  * The spring lies in the tangent plane and turns with it. For x perpendicular to n_old the rotation
  * of n_old into n is
  *     x' = x - (n.x) (n + n_old)/(1 + n.n_old),
@@ -147,6 +151,16 @@ LAW struct slider slider_slip_whole(
         way.slips ? left.x : trial.x, way.slips ? left.y : trial.y, way.slips ? left.z : trial.z);
     r.force = way.force;
     r.slips = way.slips;
+    return r;
+}
+
+/* Undamped slip. */
+LAW struct slider slider_slip_undamped(vec3 trial, vec3 before, real k, vec3 dashpot, real cap)
+{
+    struct slider r = slider_slip(trial, before, k, 0, dashpot, cap);
+    vec3 sum = v3_add(r.force, dashpot);
+    r.force =
+        v3(r.slips ? r.force.x : sum.x, r.slips ? r.force.y : sum.y, r.slips ? r.force.z : sum.z);
     return r;
 }
 

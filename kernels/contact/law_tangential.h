@@ -9,8 +9,8 @@
  * so 3.5/m* takes the place of 1/m*.
  *
  * What other codes do differently is a choice of the contact (CONTACT_ bits in law_parameters.h):
- * whole slip and no rescaling (law_slider.h), levers (law_kinematics.h), and C = mu |F_n|, with
- * which a dashpot that pulls while the contact ends allows friction too. */
+ * whole or undamped slip and no rescaling (law_slider.h), levers (law_kinematics.h), and C = mu
+ * |F_n|, with which a dashpot that pulls while the contact ends allows friction too. */
 #ifndef DEMOCLES_LAW_TANGENTIAL_H
 #define DEMOCLES_LAW_TANGENTIAL_H
 
@@ -58,6 +58,8 @@ LAW struct slider tangential_force(vec3 trial, vec3 before, struct contact_kinem
         struct slider whole = slider_slip_whole(
             trial, before, p.k_t * f.spring, dashpot, v3_scale(-(p.gamma_t * damper), v_old), cap);
         if (parameters_choose(p, CONTACT_WHOLE_SLIP)) slide = whole;
+        struct slider bare = slider_slip_undamped(trial, before, p.k_t * f.spring, dashpot, cap);
+        if (parameters_choose(p, CONTACT_UNDAMPED_SLIP)) slide = bare;
     }
     return slide;
 }

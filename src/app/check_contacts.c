@@ -83,6 +83,7 @@ static void print_tangential(const struct contact *c)
     if (c->damping_mass == DAMPING_MASS_CENTRE) printf(" (of m*)");
     printf(", friction %.4g\n", c->friction);
     if (c->slip == SLIP_WHOLE) printf("            spring and dashpot slip together\n");
+    if (c->slip == SLIP_UNDAMPED) printf("            no dashpot while the spring slips\n");
     if (c->lever == LEVER_RADIUS)
         printf("            lever arms are radii: angular momentum is not conserved\n");
     if (!c->rescale)

@@ -30,6 +30,7 @@ static void set_tangential(struct contact_material *p, const struct contact *c)
     if (c->damping_factor >= 0) p->gamma_t = c->damping_factor * p->gamma_n;
     p->mu = c->friction;
     if (c->slip == SLIP_WHOLE) p->law |= CONTACT_WHOLE_SLIP;
+    if (c->slip == SLIP_UNDAMPED) p->law |= CONTACT_UNDAMPED_SLIP;
     if (c->lever == LEVER_RADIUS) p->law |= CONTACT_RADIUS_LEVER;
     if (!c->rescale) p->law |= CONTACT_NO_RESCALE;
     if (c->cap == CAP_MAGNITUDE) p->law |= CONTACT_CAP_MAGNITUDE;

@@ -55,7 +55,7 @@ struct material {
 
 enum normal_law { NORMAL_LINEAR, NORMAL_HERTZ };
 /* Friction as other codes have it (docs/conventions.md); the first of each is the default. */
-enum slip_rule { SLIP_SPRING, SLIP_WHOLE };
+enum slip_rule { SLIP_SPRING, SLIP_WHOLE, SLIP_UNDAMPED };
 enum lever { LEVER_CONTACT, LEVER_RADIUS };
 enum friction_cap { CAP_COMPRESSION, CAP_MAGNITUDE };
 enum damping_mass { DAMPING_MASS_SURFACE, DAMPING_MASS_CENTRE };

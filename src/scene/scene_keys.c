@@ -136,10 +136,12 @@ const struct scene_key scene_keys[] = {
     .text = "gamma_t/gamma_n, in place of damping_ratio, as LAMMPS defines it"},
 {"contacts[].tangential.friction", KEY_NUMBER, NEEDED, .range = FROM_ZERO,
     .at = AT(contact, friction), .text = "coefficient of sliding friction"},
-{"contacts[].tangential.slip", KEY_CHOICE, .fallback = "spring", .words = "spring|whole",
-    .at = AT(contact, slip),
+{"contacts[].tangential.slip", KEY_CHOICE, .fallback = "spring",
+    .words = "spring|whole|undamped", .at = AT(contact, slip),
     .text = "what slips; spring: the spring is cut to the friction limit; whole: spring and "
-        "dashpot together reach it, and the spring keeps what the dashpot leaves, as in LAMMPS"},
+        "dashpot together reach it, and the spring keeps what the dashpot leaves, as in LAMMPS; "
+        "undamped: the spring is cut, and the dashpot acts only while it sticks, then without "
+        "limit, as in LIGGGHTS and Yade"},
 {"contacts[].tangential.lever", KEY_CHOICE, .fallback = "contact", .words = "contact|radius",
     .at = AT(contact, lever),
     .text = "lever arm of friction; contact: the distance to the middle of the overlap; radius: "

@@ -57,6 +57,27 @@ static void whole_slip_leaves_the_dashpot_its_share(void **state)
     assert_near(k_t * s.h.xi.y / cap, 1, 1e-9);
 }
 
+/* While the spring sticks the dashpot has no limit: the force is that without slip. Where it slips
+ * the force is mu F_n, the spring's alone. Back within the limit both act as by default. */
+static void undamped_slip_has_no_dashpot(void **state)
+{
+    const double cap = mu * k_n * 1e-5, gamma = 2 * z_t * sqrt(k_t * 2 / 7 * 1e-3);
+    struct contact s = contact_of(CONTACT_UNDAMPED_SLIP, 0, 1e-5), rough = s;
+    (void)state;
+    rough.p.mu = 1e9;
+    struct contact_result f = step(&s, 0, 3 * cap / gamma), g = step(&rough, 0, 3 * cap / gamma);
+    assert_true(f.force.y < -2 * cap && memcmp(&f.force, &g.force, sizeof f.force) == 0);
+    for (int n = 0; n < 3000; n++) f = step(&s, 0, 0.5 * cap / gamma);
+    assert_near(f.force.y / -cap, 1, 1e-9);
+    assert_near(k_t * s.h.xi.y / cap, 1, 1e-9);
+    assert_near(f.loss_t, 0, 1e-30);
+    struct contact plain = contact_of(0, 0, 1e-5);
+    plain.h = s.h;
+    f = step(&s, 0, -0.1 * cap / gamma);
+    g = step(&plain, 0, -0.1 * cap / gamma);
+    assert_true(f.force.y > -0.99 * cap && memcmp(&f.force, &g.force, sizeof f.force) == 0);
+}
+
 /* The dashpot pulls harder than the spring pushes: no friction, or mu |F_n|. */
 static void limit_takes_the_magnitude(void **state)
 {
@@ -94,6 +115,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(whole_slip_leaves_the_dashpot_its_share),
+        cmocka_unit_test(undamped_slip_has_no_dashpot),
         cmocka_unit_test(limit_takes_the_magnitude),
         cmocka_unit_test(lever_is_the_radius),
     };

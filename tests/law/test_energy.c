@@ -74,14 +74,15 @@ static void choices_of_friction(void **state)
 {
     static const double least[5] = {0.1, 1e-3, -1, 0, 0};
     (void)state;
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 8; k++) {
         struct impact c = {.hertz = k & 1,
             .z_n = 0.2,
             .z_t = 0.3,
             .mu = 0.3,
-            .slant = k >> 1 ? 1 : 0.5,
+            .slant = k & 2 ? 1 : 0.5,
             .spin = 0.3,
-            .choices = CONTACT_WHOLE_SLIP | CONTACT_RADIUS_LEVER | CONTACT_CAP_MAGNITUDE};
+            .choices = CONTACT_RADIUS_LEVER | CONTACT_CAP_MAGNITUDE};
+        c.choices |= k & 4 ? CONTACT_UNDAMPED_SLIP : CONTACT_WHOLE_SLIP;
         c.choices |= c.hertz ? CONTACT_NO_RESCALE : 0;
         check(&c, 3e-4, least);
     }

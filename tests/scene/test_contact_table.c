@@ -63,6 +63,9 @@ static void bits_of_friction(void **state)
     assert_int_equal(of(c).law, CONTACT_HERTZ);
     c.slip = SLIP_WHOLE;
     assert_int_equal(of(c).law, CONTACT_HERTZ | CONTACT_WHOLE_SLIP);
+    c.slip = SLIP_UNDAMPED;
+    assert_int_equal(of(c).law, CONTACT_HERTZ | CONTACT_UNDAMPED_SLIP);
+    c.slip = SLIP_WHOLE;
     c.lever = LEVER_RADIUS;
     c.rescale = false;
     c.cap = CAP_MAGNITUDE;
