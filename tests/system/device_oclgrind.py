@@ -157,7 +157,7 @@ class Oclgrind(parallel_runs.Case):
             self.assertGreater(record["migrations"], 0)
 
     def test_few(self):
-        self.rebuilt("few", 1, "--steps", "3", rebuilds=1)
+        self.rebuilt("few", 1, "--steps", "2", rebuilds=1)
 
     def test_few_on_two_ranks(self):
         self.rebuilt("few", 2)
