@@ -51,6 +51,25 @@ class Case(unittest.TestCase):
                 file.write(",".join(repr(float(value)) for value in (*x, radius, *v, *w)) + "\n")
         return name
 
+    def brick(self, name, corner, sides):
+        """An STL of a box of any direction; sides: its three edges at the corner, right-handed."""
+        ends = [
+            corner + x * sides[0] + y * sides[1] + z * sides[2]
+            for x in (0, 1)
+            for y in (0, 1)
+            for z in (0, 1)
+        ]
+        faces = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+        with open(self.dir / name, "w") as file:
+            file.write("solid brick\n")
+            for face in faces:
+                for a, b, c in ((0, 1, 2), (0, 2, 3)):
+                    file.write("facet normal 0 0 0\nouter loop\n")
+                    for k in (a, b, c):
+                        file.write("vertex %.12g %.12g %.12g\n" % tuple(ends[face[k]]))
+                    file.write("endloop\nendfacet\n")
+            file.write("endsolid brick\n")
+
     def run_scene(self, scene, out="out"):
         scene = {
             "method": "particles",

@@ -149,33 +149,13 @@ class Spall(Breaks):
         inside = depth[: k + 1]
         return depth[k], (at(now - inside) + at(now + inside)).mean()
 
-    def stl(self, start, axes, size):
-        corner = [
-            start
-            + axes[0] * x * size[0]
-            + axes[1] * (y - 0.5) * size[1]
-            + axes[2] * (z - 0.5) * size[2]
-            for x in (0, 1)
-            for y in (0, 1)
-            for z in (0, 1)
-        ]
-        faces = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
-        with open(self.dir / "bar.stl", "w") as file:
-            file.write("solid bar\n")
-            for face in faces:
-                for a, b, c in ((0, 1, 2), (0, 2, 3)):
-                    file.write("facet normal 0 0 0\nouter loop\n")
-                    for k in (a, b, c):
-                        file.write("vertex %.12g %.12g %.12g\n" % tuple(corner[face[k]]))
-                    file.write("endloop\nendfacet\n")
-            file.write("endsolid bar\n")
-
     def spall(self, direction, fall, rise=8, width=4):
         d = numpy.array(direction, float) / numpy.linalg.norm(direction)
         across = numpy.cross(d, [0, 0, 1]) / numpy.linalg.norm(numpy.cross(d, [0, 0, 1]))
         n = int(rise + fall + 4 * self.SLAB)
         start = numpy.full(3, 10 * H) - numpy.minimum(d, 0) * n * H
-        self.stl(start, (d, across, numpy.cross(d, across)), (n * H, width * H, width * H))
+        sides = numpy.diag([n * H, width * H, width * H]) @ [d, across, numpy.cross(d, across)]
+        self.brick("bar.stl", start - (sides[1] + sides[2]) / 2, sides)
         push = self.PEAK * TENSION / (DENSITY * self.SLAB * H)
         slab = {
             "from": (start - d * H).tolist(),
