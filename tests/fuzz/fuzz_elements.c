@@ -1,6 +1,6 @@
 /* A CSV file of any bytes becomes elements that have finite places and a size, checked against each
  * other as those of a run are, or is refused with a message. */
-#include "fuzz_input.h"
+#include "fuzz_values.h"
 #include "particle/generate.h"
 
 #include <math.h>

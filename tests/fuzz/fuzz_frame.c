@@ -99,12 +99,13 @@ static void put_dataset(hid_t file, struct fuzz_bytes *bytes)
           how = H5Pcreate(H5P_DATASET_CREATE);
     size_t layout = fuzz_choose(bytes, 16), bytes_each = H5Tget_size(type);
     if (layout == 1) H5Pset_layout(how, H5D_COMPACT);
-    if (layout == 2) H5Pset_external(how, "/etc/hostname", 0, H5F_UNLIMITED);
+    if (layout == 2) H5Pset_external(how, "/dev/zero", 0, H5F_UNLIMITED);
     H5Ldelete(file, name, H5P_DEFAULT);
     hid_t dataset = H5Dcreate2(file, name, type, space, H5P_DEFAULT, how, H5P_DEFAULT);
     if (dataset >= 0) {
         size_t n = (size_t)H5Sget_simple_extent_npoints(space);
-        fill(&numbers, bytes);
+        if (layout == 2) memset(&numbers, 0, sizeof numbers);
+        else fill(&numbers, bytes);
         if (H5Tis_variable_str(type) <= 0 && layout != 2)
             H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.byte);
         if (layout != 3) sign(dataset, column, n * bytes_each / column_type_size(column), &numbers);
@@ -189,6 +190,24 @@ static void change(struct fuzz_bytes *bytes)
     H5Fclose(file);
 }
 
+/* Whether the rows of a dataset lie in this file. */
+static bool is_inside(hid_t file, const char *path)
+{
+    hid_t dataset = H5Dopen2(file, path, H5P_DEFAULT), layout = H5Dget_create_plist(dataset);
+    bool inside = H5Pget_layout(layout) == H5D_CONTIGUOUS && H5Pget_external_count(layout) == 0;
+    H5Pclose(layout);
+    H5Dclose(dataset);
+    return inside;
+}
+
+static void expect_inside(const struct snapshot_walk *walk)
+{
+    hid_t file = H5Fopen(whole_frame_path(), H5F_ACC_RDONLY, H5P_DEFAULT);
+    for (int64_t k = 0; k < walk->n; k++)
+        fuzz_expect(is_inside(file, walk->path[k]), "a frame has its rows in its own file");
+    H5Fclose(file);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     struct fuzz_bytes bytes = {data, data + size};
@@ -198,6 +217,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     char *wrong = snapshot_walk(&walk, whole_frame_path());
     bool good = !wrong;
     for (int64_t k = 0; k < walk.n && good; k++) good = walk.sum[k] == walk.expected[k];
+    if (good) expect_inside(&walk);
     if (good) whole_frame_read();
     snapshot_walk_free(&walk);
     free(wrong);

@@ -1,6 +1,6 @@
 /* A table of a factor over time of any bytes is read, and its values and means over any interval
  * are no less and no more than what stands in it; or it is refused with a message. */
-#include "fuzz_input.h"
+#include "fuzz_values.h"
 #include "scene/history.h"
 
 #include <math.h>

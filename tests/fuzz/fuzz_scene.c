@@ -1,6 +1,6 @@
 /* A scene of any bytes is read, or refused with a message; what is read goes back to text and is
  * read again (scene_read does that itself). */
-#include "fuzz_input.h"
+#include "fuzz_values.h"
 #include "scene/scene.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

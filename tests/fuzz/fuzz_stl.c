@@ -1,6 +1,6 @@
 /* A surface of any bytes, ASCII or binary, becomes a mesh whose indices are in their ranges, or is
  * refused with a message. The scale is the last byte's. */
-#include "fuzz_input.h"
+#include "fuzz_values.h"
 #include "shape/stl.h"
 
 #include <math.h>

@@ -33,6 +33,7 @@ def scenes():
         " fill: {region: {box: {min: [0, 0, 0], max: [1, 1, 1]}}, count: 3}}]\n"
         "output: {every: 0.1}\n"
     ).encode()
+    yield b"materials: {a: &a {density: 1}, b: *a}\ncontacts: &c [{between: [a, b]}, *c]\n"
 
 
 def surfaces():
@@ -86,6 +87,8 @@ def words(inputs):
     found = set()
     for data in inputs:
         found.update(re.findall(rb"[A-Za-z][A-Za-z_]{2,30}", data))
+    if any(b"&" in data for data in inputs):
+        found.update((b"&a ", b"*a", b"&a [*a]"))
     found.update((b"1e308", b"1e-308", b"1e15", b"-1", b"nan", b"inf", b"9223372036854775808"))
     return sorted(found)
 
