@@ -5,8 +5,7 @@ compares what it measures with a reference, and advises.
     scripts/accuracy.py v_funnel --vary time.step=4e-5,2e-5,1e-5,5e-6 --starts 3 --by rate
     scripts/accuracy.py my/scene.yaml --vary time.step=2e-6,1e-6,5e-7 --reference richardson
     scripts/accuracy.py plate --vary precision=double,mixed,single --vary time.scheme=leapfrog,pefrl
-    scripts/accuracy.py drum.yaml --vary contacts.0.normal.stiffness,contacts.1.normal.stiffness=\\
-        1e5,1e4,1e3 --crossing out=50% --target 2%
+    scripts/accuracy.py my.yaml --vary materials.a.young,materials.b.young=1e7,1e8 --target 2%
 
 Each measure of the scene has an error: the largest difference of each column from the reference,
 and its root mean square over the times that both have, over the scale of the column: how far it
@@ -64,7 +63,8 @@ def add_runs(parser):
     parser.add_argument(
         "--repeats",
         type=int,
-        help="runs whose median is the run time (default: 3 of less than 10 s, else 1)",
+        help="runs whose median is the run time "
+        "(default: 3 where it is below 10 s, or twice that of others for the same work; else 1)",
     )
     parser.add_argument(
         "--starts",

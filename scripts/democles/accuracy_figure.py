@@ -10,6 +10,7 @@ from matplotlib import ticker  # noqa: E402
 import numpy  # noqa: E402
 
 from democles import accuracy_report as report  # noqa: E402
+from democles import accuracy_runs  # noqa: E402
 
 MOST_PANELS, MOST_CURVES = 6, 4
 LEAST = 1e-16  # an error of 0 has no place on a logarithmic axis
@@ -21,8 +22,8 @@ def errors_of(result, run, measure):
 
 
 def group_label(plan, run):
-    rest = [f"{k}={v}" for k, v in run.setting.items() if k != plan.graded]
-    return " ".join(rest) or plan.graded
+    rest = [f"{accuracy_runs.short(k)}={v}" for k, v in run.setting.items() if k != plan.graded]
+    return " ".join(rest) or accuracy_runs.short(plan.graded)
 
 
 def draw_panel(axis, result, measure, target):

@@ -20,7 +20,7 @@ from democles import expect, study
 OWN = ("ranks", "device")  # of the command line, not of the scene
 # Exit codes that are a result: the scene or a setting is refused, no device can do it, unstable.
 FAILS = {2: "refused", 3: "refused", 4: "no device", 5: "failed"}
-# Short runs are timed more than once: the first may have waited for kernels to be compiled.
+# Runs that are short or slow are timed more than once: the first may have waited for kernels.
 SHORT, SHORT_REPEATS = 10, 3  # [s]
 PRECISIONS = ("single", "mixed", "double")  # from the coarsest
 FOURTH_ORDER = ("rk4", "rkn4", "pefrl", "vefrl")
@@ -57,12 +57,17 @@ def settings(text):
     return dict(fixed(part) for part in split(text))
 
 
+def short(keys):
+    """The first of several."""
+    return keys.split(",")[0] + ",..." * ("," in keys)
+
+
 class Run:
     """A setting and what has come of it."""
 
     def __init__(self, setting, role="run"):
         self.setting, self.role = setting, role  # role: run, reference, start
-        self.label = " ".join(f"{key}={value}" for key, value in setting.items()) or "as given"
+        self.label = " ".join(f"{short(k)}={value}" for k, value in setting.items()) or "as given"
         self.folders, self.records, self.reason, self.key = [], [], None, None
 
     @property
@@ -78,13 +83,18 @@ class Run:
         """Time of all steps, median of the repeats [s]."""
         return statistics.median(r["wall_s"]["loop"] for r in self.records)
 
+    @property
+    def pace(self):
+        """Time of an element's force evaluation [s]."""
+        return self.seconds / max(self.record["force_evaluations"] * self.record["elements"], 1)
+
     def size(self, key):
         """What the key says of how fine the run is: smaller is finer; None: not a number."""
         if key in ("time.step", "time.safety"):
             return self.record["dt"]
         if key not in self.setting:
             return None
-        resolved = dict(leaves(expect.scene(self.folders[0])))  # without units
+        resolved = dict(expect.leaves(expect.scene(self.folders[0])))  # without units
         try:
             return float(resolved[key.split(",")[0]])
         except (KeyError, ValueError):
@@ -175,7 +185,9 @@ class Runner:
 
     def inputs(self, text):
         """The files that a scene names."""
-        words = (value for _, value in leaves(yaml.safe_load(text)) if isinstance(value, str))
+        words = (
+            value for _, value in expect.leaves(yaml.safe_load(text)) if isinstance(value, str)
+        )
         paths = (self.scene.parent / word for word in words if len(word) < 1000)
         return [path for path in paths if path.is_file()]
 
@@ -207,6 +219,12 @@ class Runner:
         elif code:
             sys.exit(f"accuracy: {run.label}: exit code {code}\n{err}")
 
+    @staticmethod
+    def is_in_doubt(run, everyone):
+        """Whether its time is short, or that of a run that has waited for kernels."""
+        least = min(other.pace for other in everyone if other.is_done)
+        return run.seconds <= SHORT or run.pace > 2 * least
+
     def run_all(self, plan, repeats):
         """Round by round, so that a machine that slows down slows all of them."""
         everyone = [*plan.runs, *([plan.reference] if plan.reference else []), *plan.starts]
@@ -214,9 +232,9 @@ class Runner:
             self.find(run)
         for repeat in range(repeats or SHORT_REPEATS):
             for run in everyone:
-                if run.reason or (repeat > 0 and not repeats and run.seconds > SHORT):
+                if run.reason or (repeat > 0 and run.role == "start"):
                     continue
-                if run.role == "start" and repeat > 0:
+                if repeat > 0 and not repeats and not self.is_in_doubt(run, everyone):
                     continue
                 if not self.take(run, repeat):
                     self.start(run, repeat)
@@ -231,19 +249,6 @@ def reason(text):
     return re.sub(r"^\S*/(?=[^/\s]+:\d)", "", first)  # the scene's name is enough
 
 
-def leaves(node, path=""):
-    """(key as --set takes it, value) of everything in a scene."""
-    if isinstance(node, dict):
-        for key, value in node.items():
-            yield from leaves(value, f"{path}.{key}" if path else str(key))
-    elif isinstance(node, list) and any(isinstance(item, (dict, list)) for item in node):
-        for k, item in enumerate(node):
-            name = item.get("name", k) if isinstance(item, dict) else k
-            yield from leaves(item, f"{path}.{name}")
-    else:
-        yield path, node
-
-
 def starts_of(options, runner, runs):
     """Runs of one setting that differ in their random numbers."""
     if options.starts <= 0:
@@ -252,7 +257,7 @@ def starts_of(options, runner, runs):
     text, why = runner.resolved(at)
     if text is None:
         sys.exit(f"accuracy: --starts-at: {why}")
-    found = dict(leaves(yaml.safe_load(text)))
+    found = dict(expect.leaves(yaml.safe_load(text)))
     keys = options.starts_key or [k for k in found if k.split(".")[-1] == "seed"]
     if not keys:
         sys.exit("accuracy: the scene has no random start (no key `seed`); --starts-key names one")

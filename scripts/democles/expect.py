@@ -37,9 +37,17 @@ def scene(folder):
     return yaml.safe_load((pathlib.Path(folder) / "resolved.yaml").read_text())
 
 
-def first_group(path):
-    """Name of the first group of elements in a scene as given."""
-    return yaml.safe_load(pathlib.Path(path).read_text())["elements"][0]["name"]
+def leaves(node, path=""):
+    """(key as --set takes it, value) of everything in a scene."""
+    if isinstance(node, dict):
+        for key, value in node.items():
+            yield from leaves(value, f"{path}.{key}" if path else str(key))
+    elif isinstance(node, list) and any(isinstance(item, (dict, list)) for item in node):
+        for k, item in enumerate(node):
+            name = item.get("name") if isinstance(item, dict) else None
+            yield from leaves(item, f"{path}.{name}" if name else f"{path}[{k}]")
+    else:
+        yield path, node
 
 
 def named(items, name):

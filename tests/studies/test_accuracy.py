@@ -13,7 +13,7 @@ import unittest
 import unittest.mock
 
 sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../scripts"))
-from democles import accuracy, accuracy_runs  # noqa: E402
+from democles import accuracy, accuracy_runs, expect  # noqa: E402
 
 DEMOCLES = os.path.abspath(sys.argv[1])
 # k_n 1e4 N/m and m* 6.5e-4 kg touch for 8e-4 s: half of it, so that the motion is smooth.
@@ -38,8 +38,9 @@ elements:
   - name: few
     material: a
     shape: {sphere: {radius: 5 mm}}
-    velocity: [0.1, 0, 0]
+    velocity: [-5, 0, 0]
     fill: {region: {box: {min: [0, 0, 0], max: [0.05, 0.05, 0.05]}}, count: 9, jitter: 0.2}
+walls: [{name: wall, material: a, surface: {plane: {point: [0, 0, 0], normal: [1, 0, 0]}}}]
 measure: [{name: first, every: 4e-5, probe: {element: 0}}]
 """
 
@@ -152,6 +153,17 @@ class Accuracy(unittest.TestCase):
             runs.append(run)
         found = sorted(range(4), key=lambda k: runs[k].fineness())
         self.assertEqual(found, [2, 1, 0, 3])
+
+    def test_keys(self):
+        """As --set takes them; several may take one value; what no device can do says so."""
+        scene = {"contacts": [{"normal": {"law": 1}}], "elements": [{"name": "a", "material": 2}]}
+        keys = {"contacts[0].normal.law": 1, "elements.a.name": "a", "elements.a.material": 2}
+        self.assertEqual(dict(expect.leaves(scene)), keys)
+        vary = ["--vary", "time.step,measure.left.every=4e-5,2e-5", "--vary", "device=0:0,9:99"]
+        self.study(*vary, "--measure", "left.x")
+        rows = self.rows("left.x")
+        self.assertEqual([row["state"][:9] for row in rows], ["done", "no device"] * 2)
+        self.assertEqual([row["steps"] for row in rows[::2]], ["10", "20"])
 
     def test_starts(self):
         """An error below what starts differ by is not distinguishable."""
