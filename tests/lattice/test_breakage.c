@@ -328,10 +328,10 @@ static void released(void **state)
 /* Argument: none, or schemes for what takes longer. */
 int main(int argc, char **argv)
 {
-    const struct CMUnitTest some[] = {cmocka_unit_test(one_link),
-        cmocka_unit_test(as_if_never_there), cmocka_unit_test(due_is_kept)};
+    const struct CMUnitTest some[] = {
+        cmocka_unit_test(one_link), cmocka_unit_test(as_if_never_there)};
     const struct CMUnitTest more[] = {cmocka_unit_test(one_link_other_axes),
-        cmocka_unit_test(schemes_agree), cmocka_unit_test(released),
+        cmocka_unit_test(due_is_kept), cmocka_unit_test(schemes_agree), cmocka_unit_test(released),
         cmocka_unit_test(as_if_never_there_more)};
     return argc > 1 && strcmp(argv[1], "schemes") == 0 ? DEVICE_TESTS(more) : DEVICE_TESTS(some);
 }
