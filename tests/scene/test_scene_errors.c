@@ -168,7 +168,7 @@ static void choices_of_friction(void **state)
         "scene.yaml:5:133: contacts[0].tangential.damping_mass: only valid with 'damping_ratio'");
     fixture_expect_one(f, SCENE(MANY "contacts: [{between: [m, m], " ELASTIC SLIDES("slip: all")),
         "scene.yaml:5:139: contacts[0].tangential.slip: unknown word 'all'; expected one of: "
-        "spring, whole");
+        "spring, whole, undamped");
 }
 
 static void hertz_needs_moduli(void **state)
