@@ -49,7 +49,7 @@ static char *no_device(
     char *text = NULL;
     size_t bytes = 0;
     FILE *file = open_memstream(&text, &bytes);
-    const char *vendors = getenv("OCL_ICD_VENDORS");
+    const char *vendors = getenv("OCL_ICD_VENDORS"), *pocl_devices = getenv("POCL_DEVICES");
     if (!file) fail_stop(EXIT_IO, "out of memory");
     if (choice)
         fprintf(file,
@@ -67,6 +67,9 @@ static char *no_device(
         fprintf(file,
             "Install the driver of your GPU, or for the CPU: apt-get install pocl-opencl-icd%s",
             vendors ? "; or unset OCL_ICD_VENDORS" : "");
+        if (pocl_devices && strcmp(pocl_devices, "basic") != 0) /* set_up_pocl's own */
+            fprintf(file, ". POCL_DEVICES is '%s': unset it unless pocl has such a device",
+                pocl_devices);
     }
     char *trouble = cache_folder_trouble();
     if (trouble) fprintf(file, ". If pocl is installed: %s", trouble);

@@ -10,23 +10,23 @@ struct row {
     const char *name;
     size_t at; /* of the double in struct trust */
     double least, most;
-    const char *before, *after, *advice; /* around the value */
+    const char *before, *after; /* around the value */
+    bool by_step;               /* a smaller time step helps */
+    const char *advice;         /* what else does */
 };
-
-#define SMALLER_STEP "a smaller time.step"
 
 static const struct row rows[] = {
     {"energy_error", offsetof(struct trust, energy_error), 0, 0.01, "energy balance off by ",
-        " of what was supplied", SMALLER_STEP},
-    {"step", offsetof(struct trust, step), 0, 1, "time step ", " of the critical one",
-        SMALLER_STEP},
+        " of what was supplied", true, ""},
+    {"step", offsetof(struct trust, step), 0, 1, "time step ", " of the critical one", true, ""},
     {"contact_steps", offsetof(struct trust, contact_steps), 20, HUGE_VAL, "shortest contact ",
-        " steps", SMALLER_STEP ", or softer contacts"},
+        " steps", true, ", or softer contacts"},
     {"overlap", offsetof(struct trust, overlap), 0, 0.2, "largest overlap ", " of the radius",
-        "stiffer contacts"},
-    {"slipping", offsetof(struct trust, slipping), 0, HUGE_VAL, "slipping ", " of the pairs", ""},
+        false, "stiffer contacts"},
+    {"slipping", offsetof(struct trust, slipping), 0, HUGE_VAL, "slipping ", " of the pairs", false,
+        ""},
     {"list_room", offsetof(struct trust, list_room), 0, 1, "neighbour lists used ",
-        " of their room", SMALLER_STEP},
+        " of their room", true, ""},
 };
 enum { N_ROW = sizeof rows / sizeof *rows };
 
@@ -60,8 +60,8 @@ static char *join(char *all, char *part)
 }
 
 /* All that are known, or those outside their range with it and with what to do. NULL where there
- * are none. The caller owns it. */
-static char *list(const struct trust *trust, bool outside)
+ * are none. The caller owns it. step_key: what makes the time step smaller. */
+static char *list(const struct trust *trust, bool outside, const char *step_key)
 {
     char *all = NULL;
     for (const struct row *row = rows; row < rows + N_ROW; row++) {
@@ -72,9 +72,10 @@ static char *list(const struct trust *trust, bool outside)
             continue;
         }
         bool above = value > row->most;
-        all =
-            join(all, fail_format("%s%.3g%s, %s %g: %s", row->before, value, row->after,
-                          above ? "above" : "below", above ? row->most : row->least, row->advice));
+        all = join(
+            all, fail_format("%s%.3g%s, %s %g: %s%s%s", row->before, value, row->after,
+                     above ? "above" : "below", above ? row->most : row->least,
+                     row->by_step ? "a smaller " : "", row->by_step ? step_key : "", row->advice));
     }
     return all;
 }
@@ -90,7 +91,8 @@ void trust_report(const struct sim *s, struct report *r, struct trust trust)
         if (is_outside(row, value_of(&trust, row))) report_text(r, NULL, row->name);
     report_end(r);
     report_end(r);
-    char *all = list(&trust, false), *outside = list(&trust, true);
+    const char *step_key = s->scene->time.step > 0 ? "time.step" : "time.safety";
+    char *all = list(&trust, false, step_key), *outside = list(&trust, true, step_key);
     if (all) log_print(s->log, "%s", all);
     if (outside) log_warn(s->log, "errors may be above 1 %%: %s", outside);
     free(all);

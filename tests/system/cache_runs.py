@@ -48,6 +48,9 @@ class Cache(robust_jobs.Case):
         for env in ({"POCL_CACHE_DIR": ""}, {"POCL_DEVICES": ""}):
             run = self.devices(XDG_CACHE_HOME=self.dir, **env)
             self.assertEqual((run.returncode, run.stderr), (0, ""), env)
+        run = self.devices(POCL_DEVICES="nonsense")
+        self.assertEqual(run.returncode, 4)
+        self.assertIn("POCL_DEVICES is 'nonsense'", run.stderr + run.stdout)
         file = os.path.join(self.dir, "file")
         open(file, "w").close()
         for folder in ("/proc/k", file):

@@ -159,7 +159,7 @@ class Owned(Files):
             shutil.rmtree(os.path.join(self.dir, "e"))
 
     def test_scene_from_a_pipe(self):
-        """It can be read once only."""
+        """It can be read once only, so by one rank."""
         os.mkfifo(os.path.join(self.dir, "pipe"))
         with open(os.path.join(self.dir, "scene.txt"), "w") as file:
             file.write(SCENE)
@@ -167,6 +167,9 @@ class Owned(Files):
         self.good("run", "pipe", "-o", "d", "--steps", "1")
         writer.wait()
         self.assertEqual(self.text("d/scene.yaml"), SCENE)
+        run = self.call("run", "pipe", "-o", "e", ranks=2)
+        self.assertEqual(run.code, 3)
+        self.assertIn("pipe: no ordinary file, so one rank alone can read it", run.err)
 
     def test_signal_while_waiting_for_a_pipe(self):
         """Nobody opens it for writing, or somebody does and writes only a part."""
