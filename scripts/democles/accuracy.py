@@ -15,9 +15,12 @@ far apart equally good runs are; an error below that is called not distinguishab
 
 Writes accuracy.csv (a line per run and column), accuracy.md, accuracy.png and curves.png into
 out/accuracy/NAME, beside the runs, which are kept: what has run is not repeated unless the scene,
-its files or the program change. Settings that fail stand there with their reason."""
+its files or the program change. Settings that fail stand there with their reason;
+runs that say that they are not to be trusted (trust in run.json) are marked and not advised."""
 import argparse
+import math
 import pathlib
+import re
 import sys
 
 from democles import accuracy_errors, accuracy_figure, accuracy_report, accuracy_runs
@@ -27,9 +30,37 @@ from democles import places, study
 def share(text):
     """Turns "1%" or "0.01" into 0.01."""
     try:
-        return float(text[:-1]) / 100 if text.endswith("%") else float(text)
+        value = float(text[:-1]) / 100 if text.endswith("%") else float(text)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"'{text}' is no number, as 1% or 0.01") from None
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"'{text}' is no number, as 1% or 0.01")
+    return value
+
+
+def above_zero(text):
+    """A share, or a number, that something can be measured by."""
+    value = share(text)
+    if value <= 0:
+        raise argparse.ArgumentTypeError(f"'{text}' is not above 0")
+    return value
+
+
+def count(least):
+    """The type of whole numbers from this one on."""
+
+    def read(text):
+        if not re.fullmatch("[0-9]{1,6}", text) or int(text) < least:
+            raise argparse.ArgumentTypeError(f"'{text}' is no whole number from {least} on")
+        return int(text)
+
+    return read
+
+
+def scale(text):
+    """MEASURE.COLUMN=VALUE"""
+    name, value = accuracy_runs.fixed(text)
+    return name, above_zero(value)
 
 
 def crossing(text):
@@ -56,19 +87,19 @@ def add_runs(parser):
         "--set",
         action="append",
         default=[],
-        type=accuracy_runs.fixed,
+        type=accuracy_runs.setting,
         metavar="KEY=VALUE",
         help="a key of all runs; may be repeated",
     )
     parser.add_argument(
         "--repeats",
-        type=int,
+        type=count(1),
         help="runs whose median is the run time "
         "(default: 3 where it is below 10 s, or twice that of others for the same work; else 1)",
     )
     parser.add_argument(
         "--starts",
-        type=int,
+        type=count(0),
         default=0,
         help="further runs of one setting with other random numbers (default: none)",
     )
@@ -116,7 +147,7 @@ def arguments():
         "--scale",
         action="append",
         default=[],
-        type=accuracy_runs.fixed,
+        type=scale,
         metavar="MEASURE.COLUMN=VALUE",
         help="what its error is relative to; may be repeated",
     )
@@ -135,7 +166,7 @@ def arguments():
         help="the error that figure and advice go by (default: largest)",
     )
     parser.add_argument(
-        "--target", type=share, default=0.01, help="the error that is asked for (default: 1%%)"
+        "--target", type=above_zero, default=0.01, help="the error that is asked for (default: 1%%)"
     )
     parser.add_argument("--no-figures", action="store_true", help="writes the tables alone")
     parser.add_argument("--out", type=pathlib.Path, help="folder for the results")
@@ -148,10 +179,17 @@ def arguments():
 def main():
     options = arguments()
     scene, name = study.find_scene("accuracy", options.scene)
-    out = options.out or places.OUT / "accuracy" / name
+    out = options.out or pathlib.Path("out/accuracy") / name
+    study.end_by_signals()
+    with study.take_folder("accuracy", out, scene, options.out is not None):
+        compare(options, scene, name, out)
+
+
+def compare(options, scene, name, out):
+    """Runs and results, in a folder that nobody else writes into."""
     runner = accuracy_runs.Runner(options.program, scene, out / "runs", dict(options.set))
     plan = accuracy_runs.plan(options, runner)
-    runner.run_all(plan, options.repeats)
+    runner.run_all(plan, options.repeats, options.reference_file is not None)
     if not any(run.is_done for run in plan.runs):
         accuracy_report.write_failures(plan)
         sys.exit("accuracy: no run has come to its end")

@@ -2,6 +2,8 @@
 import math
 import sys
 
+import numpy
+
 from democles import accuracy_series as series
 
 KINDS = ("largest", "rms", "final", "rate", "crossing")
@@ -29,6 +31,7 @@ class Study:
         self.reference_run, self.fixed, self.clean = None, {}, None
         self.reference, self.reference_text = self.find_reference()
         self.choose_columns()
+        self.can_advise = self.leave_out_unchanging()
         if self.clean is not None:
             self.take_extrapolated()
         self.scales = {name: self.scale(name) for name in self.columns}
@@ -129,6 +132,27 @@ class Study:
         for word, _, _ in self.options.crossing:
             if not any(self.is_part(name, word) for name in self.columns):
                 sys.exit(f"accuracy: --crossing: there is no {word}")
+
+    def leave_out_unchanging(self):
+        """Measures that tell nothing, since no run changes them; returns whether one is left."""
+        still = [name for name in self.columns if self.is_unchanging(name)]
+        of = {name: name.split(".")[0] for name in self.columns}
+        moving = {of[name] for name in self.columns if name not in still}
+        for measure in dict.fromkeys(of.values()):
+            if measure not in moving:
+                self.notes.append(f"{measure} does not change: nothing is compared.")
+        if moving:
+            self.columns = [name for name in self.columns if of[name] in moving]
+        return bool(moving)
+
+    def is_unchanging(self, name):
+        """The same at all times, in all runs and in the reference."""
+        if any(name == other for other, _ in self.fixed):
+            return False
+        columns = [self.values[run][name] for run in self.runs] + [self.reference[name]]
+        values = numpy.concatenate([column.value for column in columns])
+        largest = float(abs(values).max()) if len(values) else 0.0
+        return not len(values) or float(numpy.ptp(values)) <= series.NOISE * largest
 
     @staticmethod
     def is_part(name, word):

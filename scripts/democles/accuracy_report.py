@@ -5,6 +5,8 @@ import math
 from democles import accuracy_errors, study
 
 MOST_COLUMNS = 6  # of errors, in the table that people read
+CLOCK = 0.01  # [s] by which runs of the same work may differ, however short
+NO_TRUST = "not to be trusted"
 
 
 def machine(result):
@@ -62,8 +64,9 @@ def csv_cells(options, result, run, name):
 
 def verdict(result, run, name):
     if run is result.reference_run:
-        return "reference"
-    return "" if result.is_distinguishable(run, name) else "not distinguishable"
+        return "reference" + f"; {NO_TRUST}" * bool(run.doubts)
+    alike = "" if result.is_distinguishable(run, name) else "not distinguishable"
+    return "; ".join(filter(None, [alike, NO_TRUST * bool(run.doubts)]))
 
 
 def shown_columns(result):
@@ -95,6 +98,7 @@ def table_rows(result):
         note = (
             "reference" if run is result.reference_run else "not distinguishable" if alike else ""
         )
+        note = "; ".join(filter(None, [note, NO_TRUST * bool(run.doubts)]))
         errors = [None if math.isnan(error) else 100 * error for error, _ in worst]
         rows.append(
             [run.label, r["dt"], r["force_evaluations"], run.seconds, *errors, cell(order), note]
@@ -119,6 +123,10 @@ def notes(options, result):
             f"{len(starts)} starts with {starts[0].label} differ by up to: {limits} (the worst "
             "column of each); an error that is smaller in its column is not distinguishable."
         )
+    for run in [*result.runs, *filter(None, [result.plan.reference])]:
+        if run.doubts:
+            role = "The reference, " * (run in (result.reference_run, result.plan.reference))
+            lines.append(f"{role}{run.label}{',' * bool(role)} is {NO_TRUST}: {doubts(run)}.")
     return lines + result.notes
 
 
@@ -131,6 +139,10 @@ def write(out, options, result):
     print(text)
 
 
+def doubts(run):
+    return ", ".join(run.doubts)
+
+
 def write_failures(plan):
     for run in plan.runs:
         print(f"{run.label}: {run.reason}")
@@ -138,12 +150,25 @@ def write_failures(plan):
 
 def advice(options, result):
     """One sentence: the cheapest setting within the target."""
+    if not result.can_advise:
+        return "No measure changes: there is nothing to advise by."
     target = f"{100 * options.target:.3g} %"
     runs = [run for run in result.runs if run is not result.reference_run]
-    good = [run for run in runs if result.is_good(run)]
+    good = [run for run in runs if result.is_good(run) and not run.doubts]
     if not good:
         return none_good(result, runs, target)
-    best = cheapest(good)
+    reference = result.reference_run or result.plan.reference
+    rivals = [reference] if reference and not reference.doubts else []
+    best = cheapest(good + rivals)
+    if best is reference:
+        return (
+            f"The reference itself, {best.label}, is the cheapest setting within {target}: "
+            f"{best.seconds:.3g} s."
+        )
+    return praise(options, result, best, reference, target)
+
+
+def praise(options, result, best, reference, target):
     error, name = result.worst(best)
     what = f"its error ({options.by}) is {100 * error:.2g} % ({name}) in {best.seconds:.3g} s"
     if error <= options.target:
@@ -152,8 +177,7 @@ def advice(options, result):
         text = f"{best.label} is the cheapest setting that cannot be told from other starts: {what}"
         scatter = 100 * result.scatter[name][options.by]
         text += f", random starts differ by {scatter:.2g} %, and less than that nobody can promise"
-    reference = result.reference_run or result.plan.reference
-    if reference and reference.is_done and best.seconds > 0:
+    if reference and best.seconds > 0:
         text += f"; the reference takes {reference.seconds / best.seconds:.3g} times as long"
     if is_coarsest(result, best):
         text += "; it is the coarsest that has run, and a coarser one may do"
@@ -163,8 +187,11 @@ def advice(options, result):
 def cheapest(runs):
     """By time; of runs that differ by no more than clocks do, the one that computes least."""
     least = min(run.seconds for run in runs)
-    near = [run for run in runs if run.seconds <= 1.1 * least]
-    return min(near, key=lambda run: run.record["force_evaluations"] * run.record["elements"])
+    near = [run for run in runs if run.seconds <= 1.1 * least + CLOCK]
+    return min(
+        near,
+        key=lambda run: (run.record["force_evaluations"] * run.record["elements"], run.seconds),
+    )
 
 
 def is_coarsest(result, best):
@@ -178,9 +205,16 @@ def none_good(result, runs, target):
     known = [run for run in runs if not math.isnan(result.worst(run)[0])]
     if not known:
         return "Nothing but the reference has run to its end: there is no error to advise by."
-    best = min(known, key=lambda run: result.worst(run)[0])
+    trusted = [run for run in known if not run.doubts]
+    if not trusted:
+        return (
+            f"No setting can be advised: all that are compared are {NO_TRUST}, for the reasons "
+            "above; try finer ones."
+        )
+    best = min(trusted, key=lambda run: result.worst(run)[0])
     error, name = result.worst(best)
     return (
-        f"No setting but the reference stays within {target}: the best, {best.label}, is off by "
-        f"{100 * error:.2g} % ({name}); try finer ones."
+        f"No setting but the reference stays within {target}"
+        f"{' and can be trusted' * (len(trusted) < len(known))}: the best, {best.label}, is off "
+        f"by {100 * error:.2g} % ({name}); try finer ones."
     )

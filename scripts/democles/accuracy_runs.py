@@ -20,6 +20,9 @@ from democles import expect, study
 OWN = ("ranks", "device")  # of the command line, not of the scene
 # Exit codes that are a result: the scene or a setting is refused, no device can do it, unstable.
 FAILS = {2: "refused", 3: "refused", 4: "no device", 5: "failed"}
+# Those that belong to the setting whenever it runs. A device may come back, and 2 is also a folder
+# into which another run writes: the next study tries these again.
+REMEMBERED = (3, 5)
 # Runs that are short or slow are timed more than once: the first may have waited for kernels.
 SHORT, SHORT_REPEATS = 10, 3  # [s]
 PRECISIONS = ("single", "mixed", "double")  # from the coarsest
@@ -46,15 +49,33 @@ def fixed(text):
     return key, value
 
 
+def check_ranks(key, value):
+    """The one value that is read here and not by the program."""
+    if "ranks" in key.split(",") and not re.fullmatch("0*[1-9][0-9]{0,5}", value):
+        raise argparse.ArgumentTypeError(f"ranks={value}: a whole number from 1 on is needed")
+
+
+def setting(text):
+    """KEY=VALUE of a run"""
+    key, value = fixed(text)
+    check_ranks(key, value)
+    return key, value
+
+
 def vary(text):
-    """KEY[,KEY]=V1,V2 -> (keys as given, values)"""
+    """KEY[,KEY]=V1,V2 -> (keys as given, values, each once)"""
     key, values = fixed(text)
-    return key, split(values)
+    values = list(dict.fromkeys(split(values)))
+    if "" in values:
+        raise argparse.ArgumentTypeError(f"'{text}' has a value that is empty")
+    for value in values:
+        check_ranks(key, value)
+    return key, values
 
 
 def settings(text):
     """KEY=VALUE,KEY=VALUE"""
-    return dict(fixed(part) for part in split(text))
+    return dict(setting(part) for part in split(text))
 
 
 def short(keys):
@@ -82,6 +103,27 @@ class Run:
     def seconds(self):
         """Time of all steps, median of the repeats [s]."""
         return statistics.median(r["wall_s"]["loop"] for r in self.records)
+
+    @property
+    def doubts(self):
+        """Why its results are not to be relied upon, in words: what it says of itself, and a last
+        step that goes far beyond the end. Empty where nothing is known against it."""
+        trust = self.record.get("trust", {})
+        found = [
+            name.replace("_", " ") + (f" {trust[name]:.3g}" if trust.get(name) is not None else "")
+            for name in trust.get("outside", [])
+        ]
+        end, dt = self.end(), self.record["dt"]
+        if end is not None and dt > end * (1 + 1e-9):
+            found.append(f"step of {dt:g} s longer than the run")
+        elif end is not None and abs(self.record["time_end"] - end) > dt * (1 + 1e-9):
+            found.append(f"stopped at {self.record['time_end']:g} s of {end:g} s")
+        return found
+
+    def end(self):
+        """The scene's [s]; None: it has none."""
+        value = expect.scene(self.folders[0]).get("time", {}).get("end")
+        return None if value is None else float(value)
 
     @property
     def pace(self):
@@ -126,6 +168,11 @@ class Plan:
         ]
         return sorted(like, key=lambda r: -(r.size(self.graded) or 0))
 
+    def leave_out_same(self):
+        """Settings that are another one in other words, as 1e-5 and 10e-6."""
+        seen = {run.key or id(run): run for run in reversed(self.runs)}
+        self.runs = [run for run in self.runs if seen[run.key or id(run)] is run]
+
     def groups(self):
         """All groups, each once."""
         seen = {id(g[0]): g for g in (self.group(r) for r in self.runs if r.is_done)}
@@ -143,7 +190,7 @@ class Runner:
                 [program, "--version"], capture_output=True, text=True, check=True
             ).stdout.strip()
         except (OSError, subprocess.CalledProcessError) as error:
-            sys.exit(f"accuracy: {program}: {error}")
+            study.refuse("accuracy", f"cannot run {program} ({error}); --program names another")
         if "dirty" in self.version or "unknown" in self.version:  # no commit has this program
             content = pathlib.Path(shutil.which(program)).read_bytes()
             self.version += " " + hashlib.sha256(content).hexdigest()[:12]
@@ -215,7 +262,9 @@ class Runner:
         if code in FAILS:
             text = f"{FAILS[code]}: {reason(err)}\n"
             folder.parent.mkdir(parents=True, exist_ok=True)
-            (folder.parent / "failed.txt").write_text(text)
+            if code in REMEMBERED:
+                (folder.parent / "failed.txt").write_text(text)
+            run.reason = text.strip()
         elif code:
             sys.exit(f"accuracy: {run.label}: exit code {code}\n{err}")
 
@@ -225,11 +274,19 @@ class Runner:
         least = min(other.pace for other in everyone if other.is_done)
         return run.seconds <= SHORT or run.pace > 2 * least
 
-    def run_all(self, plan, repeats):
+    def run_all(self, plan, repeats, has_reference):
         """Round by round, so that a machine that slows down slows all of them."""
         everyone = [*plan.runs, *([plan.reference] if plan.reference else []), *plan.starts]
         for run in everyone:
             self.find(run)
+        plan.leave_out_same()
+        if len(plan.runs) == 1 and not plan.reference and not has_reference:
+            study.refuse(
+                "accuracy",
+                f"{plan.runs[0].label} alone has nothing to be compared with: --vary needs another "
+                "value, or --reference a setting",
+            )
+        everyone = [run for run in everyone if run.role != "run" or run in plan.runs]
         for repeat in range(repeats or SHORT_REPEATS):
             for run in everyone:
                 if run.reason or (repeat > 0 and run.role == "start"):
@@ -288,6 +345,6 @@ def plan(options, runner):
         try:
             reference = Run(settings(options.reference), "reference")
         except argparse.ArgumentTypeError as error:
-            sys.exit(f"accuracy: --reference: {error}")
+            study.refuse("accuracy", f"--reference: {error}")
     starts = starts_of(options, runner, runs)
     return Plan(runs, reference, starts, graded[0] if graded else None)

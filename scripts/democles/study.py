@@ -1,10 +1,12 @@
 """Shared by the studies of runs on many ranks: starting a run, reading its record,
 writing tables."""
 import csv
+import fcntl
 import json
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
 
@@ -16,6 +18,8 @@ PARTS = (
     "wait",
     "regroup",
 )  # of the loop's time; they do not overlap here: exchange is without wait
+
+PATIENCE = 30  # [s] for a run that is asked to end
 
 # Published speed-up and efficiency [%] of a reference solver,
 # on the scenes that cases/ repeats (base: one processor).
@@ -57,16 +61,67 @@ def run(program, scene, folder, ranks, *args):
     command += ["--quiet", *args]
     if ranks > 1:
         command = mpi.command("-n", str(ranks), *command)
-    done = subprocess.run(
+    child = subprocess.Popen(
         command,
         env=env,
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
         text=True,
-        check=False,
     )
-    return done.returncode, done.stderr
+    try:
+        err = child.communicate()[1]
+        return child.returncode, err
+    finally:
+        end(child)
+
+
+def end(child):
+    """Ends what still runs: asked first, since a launcher that is killed leaves its ranks."""
+    if child.poll() is None:
+        child.terminate()
+        try:
+            child.communicate(timeout=PATIENCE)
+        except subprocess.TimeoutExpired:
+            child.kill()
+            child.communicate()
+
+
+def end_by_signals():
+    """SIGTERM and SIGINT leave with 128 + their number, by way of what cleans up."""
+
+    def leave(number, _):
+        for each in (signal.SIGTERM, signal.SIGINT):  # cleaning up is not interrupted
+            signal.signal(each, signal.SIG_IGN)
+        sys.exit(128 + number)
+
+    signal.signal(signal.SIGTERM, leave)
+    signal.signal(signal.SIGINT, leave)
+
+
+def refuse(tool, text):
+    """Leaves with the code of wrong usage."""
+    print(f"{tool}: {text}", file=sys.stderr)
+    sys.exit(2)
+
+
+def take_folder(tool, folder, scene, is_own):
+    """Locks a folder of results, which belongs to one study at a time and, unless the user has
+    named it (is_own), to one scene. Returns the open file: the lock lasts as long as it does."""
+    folder.mkdir(parents=True, exist_ok=True)
+    file = open(folder / "study.lock", "a+")
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        refuse(tool, f"another study is writing into {folder}")
+    file.seek(0)
+    before, now = file.read().strip(), str(scene.resolve())
+    if before not in ("", now) and not is_own:
+        refuse(tool, f"{folder} has the results of {before}: --out names another folder")
+    file.truncate(0)
+    file.write(now + "\n")
+    file.flush()
+    return file
 
 
 def take_up(results, folder):

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""scripts/accuracy.py on two spheres in contact. Argument: democles."""
+"""scripts/accuracy.py on two spheres in contact. Arguments: democles, and the tests
+that run (all)."""
 import contextlib
 import csv
 import io
@@ -7,13 +8,16 @@ import json
 import math
 import os
 import pathlib
+import signal
+import subprocess
 import sys
 import tempfile
+import time
 import unittest
 import unittest.mock
 
 sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../scripts"))
-from democles import accuracy, accuracy_runs, expect  # noqa: E402
+from democles import accuracy, accuracy_report, accuracy_runs, expect, study  # noqa: E402
 
 DEMOCLES = os.path.abspath(sys.argv[1])
 # k_n 1e4 N/m and m* 6.5e-4 kg touch for 8e-4 s: half of it, so that the motion is smooth.
@@ -45,7 +49,9 @@ measure: [{name: first, every: 4e-5, probe: {element: 0}}]
 """
 
 
-class Accuracy(unittest.TestCase):
+class Base(unittest.TestCase):
+    """A scene in a folder, and the tool."""
+
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
         self.addCleanup(self.folder.cleanup)
@@ -75,6 +81,10 @@ class Accuracy(unittest.TestCase):
         with open(os.path.join(self.out, "accuracy.csv"), newline="") as file:
             return [row for row in csv.DictReader(file) if row["measure"] in (measure, None)]
 
+
+class Accuracy(Base):
+    """What is quick."""
+
     def test_steps(self):
         """Three steps, one that fails, and the same again."""
         args = ["--vary", "time.step=1e-3,4e-5,2e-5,1e-5", "--measure", "left", "--target", "0.2%"]
@@ -89,6 +99,9 @@ class Accuracy(unittest.TestCase):
         self.assertEqual(told, "")
         self.assertTrue(first.startswith(again[: again.rindex("\n\n")]), again)
         self.check_advice(first.splitlines()[-1])
+        still, _ = self.study(*args[:2], "--measure", "left.y")
+        self.assertIn("left does not change: nothing is compared.", still)
+        self.assertTrue(still.endswith("there is nothing to advise by.\n"), still)
         for name in ("accuracy.png", "curves.png"):
             self.assertGreater(os.path.getsize(os.path.join(self.out, name)), 10000)
 
@@ -102,6 +115,160 @@ class Accuracy(unittest.TestCase):
         self.assertTrue(
             line.startswith("time.step=2e-5 is the cheapest setting within 0.2 %"), line
         )
+
+    def test_finest(self):
+        """Smallest cells first, whatever unit they are given in; then order, step and digits."""
+        rows = (
+            ("2.5e-3", "0.25 cm", 1e-6, "leapfrog", "single"),
+            ("2.5e-3", "2.5 mm", 1e-6, "leapfrog", "double"),
+            ("2.5e-3", "0.0025", 2e-6, "rk4", "single"),
+            ("1e-2", "10mm", 1e-7, "rk4", "double"),
+        )
+        runs = []
+        for k, (cell, given, dt, scheme, precision) in enumerate(rows):
+            self.put(f"{k}/resolved.yaml", f"bodies:\n  - name: a\n    cell: {cell}\n")
+            run = accuracy_runs.Run({"bodies.a.cell": given})
+            run.folders = [pathlib.Path(self.folder.name) / str(k)]
+            run.records = [{"dt": dt, "scheme": scheme, "precision": precision}]
+            runs.append(run)
+        found = sorted(range(4), key=lambda k: runs[k].fineness())
+        self.assertEqual(found, [2, 1, 0, 3])
+
+    def test_keys(self):
+        """As --set takes them; several may take one value; what no device can do says so."""
+        scene = {"contacts": [{"normal": {"law": 1}}], "elements": [{"name": "a", "material": 2}]}
+        keys = {"contacts[0].normal.law": 1, "elements.a.name": "a", "elements.a.material": 2}
+        self.assertEqual(dict(expect.leaves(scene)), keys)
+        vary = ["--vary", "time.step,measure.left.every=4e-5,2e-5", "--vary", "device=0:0,9:99"]
+        self.study(*vary, "--measure", "left.x")
+        rows = self.rows("left.x")
+        self.assertEqual([row["state"][:9] for row in rows], ["done", "no device"] * 2)
+        self.assertEqual([row["steps"] for row in rows[::2]], ["10", "20"])
+
+    def refused(self, *args):
+        """What the tool says that refuses these before it runs anything."""
+        told = io.StringIO()
+        words = [os.path.join(self.folder.name, "scene.yaml"), "--out", self.out, *args]
+        with contextlib.redirect_stderr(told), self.assertRaises(SystemExit) as left:
+            with unittest.mock.patch.object(sys, "argv", ["accuracy", *words]):
+                accuracy.main()
+        self.assertEqual(left.exception.code, 2, told.getvalue())
+        return told.getvalue()
+
+    def test_refused(self):
+        """Values that cannot be meant: exit code 2, and a message that names them."""
+        for word in ("ranks=1,x", "ranks=0,1", "ranks=1.5,2", "time.step,ranks=-1,2"):
+            self.assertIn("a whole number from 1 on", self.refused("--vary", word))
+        vary = ["--vary", "time.step=2e-5,1e-5"]
+        for word in ("--reference", "--set"):
+            self.assertIn("ranks=x", self.refused(*vary, word, "ranks=x"))
+        for word in ("nan", "-1%", "0", "1e400", "x%"):
+            self.assertIn(f"'{word}'", self.refused(*vary, f"--target={word}"))
+        for word in ("--starts=-3", "--repeats=0", "--repeats=1.5"):
+            self.assertIn("whole number", self.refused(*vary, word))
+        for word in ("left.x=x", "left.x=0", "left.x=nan"):
+            self.assertIn(word[7:], self.refused(*vary, "--scale", word))
+        self.assertIn("/no/where", self.refused(*vary, "--program", "/no/where"))
+        alone = self.refused("--vary", "time.step=1e-5,1e-5,10e-6", "--program", DEMOCLES)
+        self.assertIn("alone has nothing to be compared with", alone)
+
+    def test_folder(self):
+        """One study at a time, and one scene unless the user has named the folder."""
+        folder, scene = pathlib.Path(self.out), pathlib.Path(self.folder.name) / "scene.yaml"
+        with study.take_folder("accuracy", folder, scene, False):
+            args = ["--vary", "time.step=2e-5,1e-5", "--program", DEMOCLES]
+            self.assertIn("another study is writing into " + self.out, self.refused(*args))
+        told = io.StringIO()
+        with contextlib.redirect_stderr(told), self.assertRaises(SystemExit) as left:
+            study.take_folder("accuracy", folder, scene.with_name("other.yaml"), False)
+        self.assertEqual(left.exception.code, 2)
+        self.assertRegex(told.getvalue(), "has the results of .*/scene.yaml: --out names another")
+        study.take_folder("accuracy", folder, scene.with_name("other.yaml"), True).close()
+
+    def test_failures(self):
+        """Those of the setting are remembered, others are tried again by the next study."""
+        runner = object.__new__(accuracy_runs.Runner)
+        runner.program, runner.scene, runner.common = "democles", pathlib.Path("s.yaml"), {}
+        runner.folder = pathlib.Path(self.out)
+        for code, is_kept in ((3, True), (5, True), (2, False), (4, False)):
+            run, again = accuracy_runs.Run({}), accuracy_runs.Run({})
+            run.key = again.key = str(code)
+            with unittest.mock.patch.object(study, "run", return_value=(code, "so it is\n")):
+                with contextlib.redirect_stderr(io.StringIO()):
+                    runner.start(run, 0)
+            self.assertRegex(run.reason, "^[a-z ]+: so it is$")
+            self.assertEqual(runner.take(again, 0), is_kept, code)
+            self.assertEqual(again.reason, run.reason if is_kept else None)
+        for code in (6, 75, -9, 137):
+            with unittest.mock.patch.object(study, "run", return_value=(code, "so it is\n")):
+                with contextlib.redirect_stderr(io.StringIO()), self.assertRaises(SystemExit):
+                    runner.start(run, 0)
+            self.assertFalse(runner.take(run, 0))
+
+    def made_up(self, name, seconds, outside=(), dt=1e-5):
+        """A run that has only been written down."""
+        self.put(f"{name}/resolved.yaml", "time: {end: 4e-4}\n")
+        run = accuracy_runs.Run({"name": name})
+        run.folders = [pathlib.Path(self.folder.name) / name]
+        trust = {"overlap": 0.4, "slipping": None, "outside": list(outside)}
+        record = {"dt": dt, "time_end": max(dt, 4e-4), "force_evaluations": 1 / dt, "elements": 1}
+        run.records = [{**record, "trust": trust, "wall_s": {"loop": seconds}}]
+        return run
+
+    def advice(self, *runs):
+        """What is advised by these runs and their errors; the first is the reference."""
+        result = unittest.mock.Mock(runs=[run for run, _ in runs], can_advise=True)
+        errors = dict(runs)
+        result.reference_run = runs[0][0]
+        result.plan.graded, result.plan.runs = None, result.runs
+        result.is_good = lambda run: errors[run] <= 0.01
+        result.worst = lambda run: (errors[run], "left.x")
+        options = unittest.mock.Mock(target=0.01, by="largest")
+        return accuracy_report.advice(options, result)
+
+    def test_trust(self):
+        """Runs that say that they are wrong are not advised, nor those that go beyond the end."""
+        fine, soft = self.made_up("fine", 9), self.made_up("soft", 2, ["overlap"])
+        good, long = self.made_up("good", 5), self.made_up("long", 1, dt=2e-3)
+        self.assertEqual((fine.doubts, soft.doubts), ([], ["overlap 0.4"]))
+        self.assertEqual(long.doubts, ["step of 0.002 s longer than the run"])
+        pairs = [(fine, 0), (soft, 1e-3), (long, 1e-3)]
+        self.assertRegex(self.advice(*pairs, (good, 2e-3)), "^name=good is the cheapest")
+        self.assertRegex(self.advice(*pairs, (good, 0.1)), "can be trusted: the best, name=good")
+        self.assertRegex(self.advice(*pairs), "^No setting can be advised: .* not to be trusted")
+
+    def test_cheap_reference(self):
+        """It competes with the rest, but for one that is not to be trusted."""
+        dear = self.made_up("dear", 5, dt=2e-5)
+        said = self.advice((self.made_up("fine", 1), 0), (dear, 1e-3))
+        self.assertRegex(said, "^The reference itself, name=fine, is the cheapest .* 1 %: 1 s")
+        said = self.advice((self.made_up("fine", 1, ["overlap"]), 0), (dear, 1e-3))
+        self.assertRegex(said, "^name=dear is the cheapest")
+
+    def test_signal(self):
+        """A study that is ended ends its run."""
+        program = os.path.join(self.folder.name, "program")
+        self.put(
+            "program",
+            f"#!/bin/sh\necho $$ > {self.folder.name}/new\n"
+            f"mv {self.folder.name}/new {self.folder.name}/pid\nexec sleep 100\n",
+        )
+        os.chmod(program, 0o700)
+        code = "import pathlib, sys; sys.path.insert(1, sys.argv[1]); from democles import study\n"
+        code += "study.end_by_signals(); study.run(sys.argv[2], pathlib.Path('s'), 'f', 1)"
+        command = [sys.executable, "-c", code, os.path.dirname(accuracy.__file__) + "/..", program]
+        with subprocess.Popen(command) as tool:
+            pid = pathlib.Path(self.folder.name) / "pid"
+            while not pid.exists() and tool.poll() is None:
+                time.sleep(0.05)
+            tool.terminate()
+            self.assertEqual(tool.wait(60), 128 + signal.SIGTERM)
+        with self.assertRaises(ProcessLookupError):
+            os.kill(int(pid.read_text()), 0)
+
+
+class AccuracyMore(Base):
+    """What takes many runs."""
 
     def test_richardson(self):
         """What the finest three extrapolate to is nearer to the closed form than any of them."""
@@ -136,35 +303,6 @@ class Accuracy(unittest.TestCase):
         # linear between times of the measure, h apart: a h^2/8 of a way at speed v, and the step
         self.assertAlmostEqual(float(rows[0]["crossing [s]"]), when, delta=1e-6)
 
-    def test_finest(self):
-        """Smallest cells first, whatever unit they are given in; then order, step and digits."""
-        rows = (
-            ("2.5e-3", "0.25 cm", 1e-6, "leapfrog", "single"),
-            ("2.5e-3", "2.5 mm", 1e-6, "leapfrog", "double"),
-            ("2.5e-3", "0.0025", 2e-6, "rk4", "single"),
-            ("1e-2", "10mm", 1e-7, "rk4", "double"),
-        )
-        runs = []
-        for k, (cell, given, dt, scheme, precision) in enumerate(rows):
-            self.put(f"{k}/resolved.yaml", f"bodies:\n  - name: a\n    cell: {cell}\n")
-            run = accuracy_runs.Run({"bodies.a.cell": given})
-            run.folders = [pathlib.Path(self.folder.name) / str(k)]
-            run.records = [{"dt": dt, "scheme": scheme, "precision": precision}]
-            runs.append(run)
-        found = sorted(range(4), key=lambda k: runs[k].fineness())
-        self.assertEqual(found, [2, 1, 0, 3])
-
-    def test_keys(self):
-        """As --set takes them; several may take one value; what no device can do says so."""
-        scene = {"contacts": [{"normal": {"law": 1}}], "elements": [{"name": "a", "material": 2}]}
-        keys = {"contacts[0].normal.law": 1, "elements.a.name": "a", "elements.a.material": 2}
-        self.assertEqual(dict(expect.leaves(scene)), keys)
-        vary = ["--vary", "time.step,measure.left.every=4e-5,2e-5", "--vary", "device=0:0,9:99"]
-        self.study(*vary, "--measure", "left.x")
-        rows = self.rows("left.x")
-        self.assertEqual([row["state"][:9] for row in rows], ["done", "no device"] * 2)
-        self.assertEqual([row["steps"] for row in rows[::2]], ["10", "20"])
-
     def test_starts(self):
         """An error below what starts differ by is not distinguishable."""
         self.put("fill.yaml", FILL)
@@ -177,7 +315,7 @@ class Accuracy(unittest.TestCase):
                 "--measure",
                 "first.x",
                 "--target",
-                "0",
+                "1e-9",
             ),
             scene="fill.yaml",
         )
@@ -197,4 +335,4 @@ class Accuracy(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+    unittest.main(argv=sys.argv[:1] + sys.argv[2:])
