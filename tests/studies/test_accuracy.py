@@ -148,7 +148,8 @@ class Accuracy(Base):
     def refused(self, *args):
         """What the tool says that refuses these before it runs anything."""
         told = io.StringIO()
-        words = [os.path.join(self.folder.name, "scene.yaml"), "--out", self.out, *args]
+        words = [os.path.join(self.folder.name, "scene.yaml"), "--out", self.out]
+        words += ["--program", DEMOCLES, *args]
         with contextlib.redirect_stderr(told), self.assertRaises(SystemExit) as left:
             with unittest.mock.patch.object(sys, "argv", ["accuracy", *words]):
                 accuracy.main()
@@ -169,14 +170,14 @@ class Accuracy(Base):
         for word in ("left.x=x", "left.x=0", "left.x=nan"):
             self.assertIn(word[7:], self.refused(*vary, "--scale", word))
         self.assertIn("/no/where", self.refused(*vary, "--program", "/no/where"))
-        alone = self.refused("--vary", "time.step=1e-5,1e-5,10e-6", "--program", DEMOCLES)
+        alone = self.refused("--vary", "time.step=1e-5,1e-5,10e-6")
         self.assertIn("alone has nothing to be compared with", alone)
 
     def test_folder(self):
         """One study at a time, and one scene unless the user has named the folder."""
         folder, scene = pathlib.Path(self.out), pathlib.Path(self.folder.name) / "scene.yaml"
         with study.take_folder("accuracy", folder, scene, False):
-            args = ["--vary", "time.step=2e-5,1e-5", "--program", DEMOCLES]
+            args = ["--vary", "time.step=2e-5,1e-5"]
             self.assertIn("another study is writing into " + self.out, self.refused(*args))
         told = io.StringIO()
         with contextlib.redirect_stderr(told), self.assertRaises(SystemExit) as left:
