@@ -169,7 +169,7 @@ class Owned(Files):
         self.assertEqual(self.text("d/scene.yaml"), SCENE)
         run = self.call("run", "pipe", "-o", "e", ranks=2)
         self.assertEqual(run.code, 3)
-        self.assertIn("pipe: no ordinary file, so one rank alone can read it", run.err)
+        self.assertIn("no ordinary file, so one rank alone can read it", "\n".join(run.err))
 
     def test_signal_while_waiting_for_a_pipe(self):
         """Nobody opens it for writing, or somebody does and writes only a part."""
