@@ -20,7 +20,6 @@ runs that say that they are not to be trusted (trust in run.json) are marked and
 import argparse
 import math
 import pathlib
-import re
 import sys
 
 from democles import accuracy_errors, accuracy_figure, accuracy_report, accuracy_runs
@@ -48,13 +47,7 @@ def above_zero(text):
 
 def count(least):
     """The type of whole numbers from this one on."""
-
-    def read(text):
-        if not re.fullmatch("[0-9]{1,6}", text) or int(text) < least:
-            raise argparse.ArgumentTypeError(f"'{text}' is no whole number from {least} on")
-        return int(text)
-
-    return read
+    return lambda text: accuracy_runs.whole(text, least)
 
 
 def scale(text):

@@ -49,10 +49,20 @@ def fixed(text):
     return key, value
 
 
+def whole(text, least):
+    """A whole number from this one on."""
+    if not re.fullmatch("[0-9]{1,6}", text) or int(text) < least:
+        raise argparse.ArgumentTypeError(f"'{text}' is no whole number from {least} on")
+    return int(text)
+
+
 def check_ranks(key, value):
     """The one value that is read here and not by the program."""
-    if "ranks" in key.split(",") and not re.fullmatch("0*[1-9][0-9]{0,5}", value):
-        raise argparse.ArgumentTypeError(f"ranks={value}: a whole number from 1 on is needed")
+    if "ranks" in key.split(","):
+        try:
+            whole(value, 1)
+        except argparse.ArgumentTypeError as error:
+            raise argparse.ArgumentTypeError(f"ranks={value}: {error}") from None
 
 
 def setting(text):

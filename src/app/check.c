@@ -108,16 +108,16 @@ static void print_time(
 static void print_left_out(const struct features *features)
 {
     double element = features_element_bytes(features), pair = features_pair_bytes(features);
-    int column =
-        printf("    left out, with the bytes per particle and per pair that it would add:");
+    int n = 0, column = printf("    left out, with the bytes per particle and per pair of each:");
     for (const struct feature_row *row = features_table; feature_table_more(row); row++) {
         struct features more = *features;
         if (!row->name || feature_table_value(row, features)) continue;
         *((bool *)(void *)&more + row->at) = true;
         double add[] = {features_element_bytes(&more) - element, features_pair_bytes(&more) - pair};
         if (!(add[0] > 0) && !(add[1] > 0)) continue;
+        if (n++ > 0) column += printf(";");
         if (column > 80) column = printf("\n       ");
-        column += printf(" %s %g + %g;", row->name, add[0], add[1]);
+        column += printf(" %s %g + %g", row->name, add[0], add[1]);
     }
     printf("\n");
 }

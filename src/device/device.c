@@ -1,4 +1,4 @@
-#define _GNU_SOURCE /* CPU sets */
+#define _GNU_SOURCE /* CPU sets, strcasestr */
 #include "device.h"
 
 #include <sched.h>
@@ -38,7 +38,7 @@ static bool set_up_pocl(const struct comm *comm, const char *choice)
     setenv("POCL_MAX_PTHREAD_COUNT", text, 0);
     setenv("POCL_CPU_MAX_CU_COUNT", text, 0);
     setenv("POCL_MAX_COMPUTE_UNITS", text, 0);
-    if (n == 1 && !(choice && strstr(choice, "pthread"))) setenv("POCL_DEVICES", "basic", 0);
+    if (n == 1 && !(choice && strcasestr(choice, "pthread"))) setenv("POCL_DEVICES", "basic", 0);
     return own_core;
 }
 

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "comm/fail.h"
@@ -49,35 +50,27 @@ double trust_energy(double balance, double supplied, double spare)
     return all > 0 ? fabs(balance) / all : (double)NAN;
 }
 
-/* Joins the next part to `all`; takes both over. */
-static char *join(char *all, char *part)
-{
-    if (!all) return part;
-    char *longer = fail_format("%s; %s", all, part);
-    free(all);
-    free(part);
-    return longer;
-}
-
-/* All that are known, or those outside their range with it and with what to do. NULL where there
+/* All that are known, or those outside their range with it and with what to do; empty where there
  * are none. The caller owns it. step_key: what makes the time step smaller. */
 static char *list(const struct trust *trust, bool outside, const char *step_key)
 {
-    char *all = NULL;
+    char *text = NULL;
+    size_t bytes = 0;
+    FILE *file = open_memstream(&text, &bytes);
+    if (!file) fail_stop(EXIT_IO, "out of memory");
+    int n = 0;
     for (const struct row *row = rows; row < rows + N_ROW; row++) {
         double value = value_of(trust, row);
         if (!isfinite(value) || (outside && !is_outside(row, value))) continue;
-        if (!outside) {
-            all = join(all, fail_format("%s%.3g%s", row->before, value, row->after));
-            continue;
-        }
-        bool above = value > row->most;
-        all = join(
-            all, fail_format("%s%.3g%s, %s %g: %s%s%s", row->before, value, row->after,
-                     above ? "above" : "below", above ? row->most : row->least,
-                     row->by_step ? "a smaller " : "", row->by_step ? step_key : "", row->advice));
+        fprintf(file, "%s%s%.3g%s", n++ > 0 ? "; " : "", row->before, value, row->after);
+        if (!outside) continue;
+        if (value > row->most) fprintf(file, ", above %g: ", row->most);
+        else fprintf(file, ", below %g: ", row->least);
+        fprintf(file, "%s%s%s", row->by_step ? "a smaller " : "", row->by_step ? step_key : "",
+            row->advice);
     }
-    return all;
+    fclose(file);
+    return text;
 }
 
 void trust_report(const struct sim *s, struct report *r, struct trust trust)
@@ -93,8 +86,8 @@ void trust_report(const struct sim *s, struct report *r, struct trust trust)
     report_end(r);
     const char *step_key = s->scene->time.step > 0 ? "time.step" : "time.safety";
     char *all = list(&trust, false, step_key), *outside = list(&trust, true, step_key);
-    if (all) log_print(s->log, "%s", all);
-    if (outside) log_warn(s->log, "errors may be above 1 %%: %s", outside);
+    if (all[0]) log_print(s->log, "%s", all);
+    if (outside[0]) log_warn(s->log, "errors may be above 1 %%: %s", outside);
     free(all);
     free(outside);
 }

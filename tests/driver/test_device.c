@@ -47,6 +47,7 @@ static void list(const struct device *dev)
 
 int main(int argc, char **argv)
 {
+    unsetenv("POCL_DEVICES"); /* the choice of the driver is looked at, too */
     struct comm *comm = comm_create(&argc, &argv);
     for (int k = 0; k < 3; k++) {
         bool profile = k == 1;
@@ -58,6 +59,7 @@ int main(int argc, char **argv)
         if (dev->is_pocl && getenv("POCL_MAX_PTHREAD_COUNT")) {
             CHECK(dev->compute_units <= (cl_uint)atoi(getenv("POCL_MAX_PTHREAD_COUNT")));
             CHECK(dev->n_share == comm->n_node_rank);
+            CHECK(dev->at_once == (atoi(getenv("POCL_MAX_PTHREAD_COUNT")) == 1));
         }
         device_free(dev);
     }

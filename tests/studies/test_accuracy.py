@@ -159,7 +159,7 @@ class Accuracy(Base):
     def test_refused(self):
         """Values that cannot be meant: exit code 2, and a message that names them."""
         for word in ("ranks=1,x", "ranks=0,1", "ranks=1.5,2", "time.step,ranks=-1,2"):
-            self.assertIn("a whole number from 1 on", self.refused("--vary", word))
+            self.assertIn("no whole number from 1 on", self.refused("--vary", word))
         vary = ["--vary", "time.step=2e-5,1e-5"]
         for word in ("--reference", "--set"):
             self.assertIn("ranks=x", self.refused(*vary, word, "ranks=x"))
